@@ -1,0 +1,1 @@
+//! Contact geometry: search, projection, constraint rows.

@@ -1,0 +1,18 @@
+//! Contact mechanics engine: pressure-overclosure laws, deck reader, contact state, statics.
+//!
+//! Deterministic: same model and calls, same bits. No clocks, no sockets, no threads of its own.
+
+#![forbid(unsafe_code)]
+
+pub mod deck;
+pub mod diagnostic;
+pub mod law;
+pub mod model;
+pub mod output;
+pub mod port;
+pub mod simulation;
+
+mod contact;
+mod element;
+mod procedure;
+mod solve;

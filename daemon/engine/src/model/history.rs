@@ -1,0 +1,207 @@
+//! Steps: procedures, loads, prescribed displacements and output requests.
+
+use super::{AmplitudeId, ElementId, ElementFace, NodeId, SetId};
+use crate::diagnostic::Place;
+
+/// `*STEP` … `*END STEP`.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// `NAME=` or `Step-1`, `Step-2`, ….
+    pub name: String,
+    /// `INC=`: most increments of the step; 100 unless given.
+    pub increments_max: u32,
+    /// Procedure and its data line.
+    pub procedure: Procedure,
+    /// `*BOUNDARY` lines of the step, in order.
+    pub boundaries: Vec<Boundary>,
+    /// `*CLOAD`, `*DLOAD`, `*DSLOAD` lines of the step, in order.
+    pub loads: Vec<Load>,
+    /// Whether `*CLOAD, OP=NEW` / `*DLOAD, OP=NEW` / `*DSLOAD, OP=NEW` removes the loads of earlier steps.
+    pub loads_removed: LoadsRemoved,
+    /// What to write.
+    pub output: OutputRequests,
+    /// Line of `*STEP`.
+    pub place: Place,
+}
+
+/// Kinds of loads whose earlier values do not carry over into this step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadsRemoved {
+    /// `*CLOAD, OP=NEW`.
+    pub cload: bool,
+    /// `*DLOAD, OP=NEW`.
+    pub dload: bool,
+    /// `*DSLOAD, OP=NEW`.
+    pub dsload: bool,
+}
+
+/// What a step does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Procedure {
+    /// `*STATIC`.
+    Static(StaticControl),
+}
+
+/// Data line of `*STATIC`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticControl {
+    /// First (or, with DIRECT, every) increment [time]; defaults to the period.
+    pub increment_initial: f64,
+    /// Length of the step [time]; 1 unless given.
+    pub period: f64,
+    /// Smallest increment before the step stops; default 1e-5 of the period (or the first increment, if smaller).
+    pub increment_min: f64,
+    /// Largest increment; default the period.
+    pub increment_max: f64,
+    /// `DIRECT`: increments are fixed, no cutback.
+    pub direct: bool,
+}
+
+/// Reference to a set by its name, or to one node or element by its number.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Region {
+    /// A set.
+    Set(SetId),
+    /// A single node label or element label.
+    Label(u32),
+}
+
+/// One degree of freedom range of one `*BOUNDARY` data line, already split: one direction each.
+#[derive(Clone, Debug)]
+pub struct Boundary {
+    /// What the analyst named.
+    pub region: Region,
+    /// Name of the set, or the label as text: used in port names.
+    pub region_name: String,
+    /// Nodes of the region.
+    pub nodes: Vec<NodeId>,
+    /// Direction, 0..3.
+    pub direction: u8,
+    /// Prescribed displacement [length] at amplitude 1.
+    pub magnitude: f64,
+    /// Amplitude, if any; otherwise the step's ramp.
+    pub amplitude: Option<AmplitudeId>,
+    /// The line.
+    pub place: Place,
+}
+
+/// One load data line.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// What the analyst named.
+    pub region: Region,
+    /// Name of the set or surface, or the label as text: used in port names.
+    pub region_name: String,
+    /// Kind and target.
+    pub kind: LoadKind,
+    /// Force, pressure or acceleration at amplitude 1.
+    pub magnitude: f64,
+    /// Amplitude, if any; otherwise the step's ramp.
+    pub amplitude: Option<AmplitudeId>,
+    /// The line.
+    pub place: Place,
+}
+
+/// Loads that can be applied.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LoadKind {
+    /// `*CLOAD`: force on each node of the region, in one direction (0..3).
+    Concentrated {
+        /// Loaded nodes.
+        nodes: Vec<NodeId>,
+        /// Direction, 0..3.
+        direction: u8,
+    },
+    /// `*DLOAD` Pn: pressure on face n of each element of the region, positive into the element.
+    FacePressure {
+        /// Loaded faces.
+        faces: Vec<ElementFace>,
+        /// Face number 1..6, for the port name.
+        label: u8,
+    },
+    /// `*DLOAD` GRAV: acceleration `magnitude` along the unit vector on the elements' mass.
+    Gravity {
+        /// Loaded elements.
+        elements: Vec<ElementId>,
+        /// Unit vector.
+        direction: [f64; 3],
+    },
+    /// `*DSLOAD` P: pressure on a surface, positive into the body.
+    SurfacePressure {
+        /// Loaded faces.
+        faces: Vec<ElementFace>,
+    },
+}
+
+/// What a step writes, and how often.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OutputRequests {
+    /// `*NODE PRINT`, `*NODE FILE`, `*NODE OUTPUT`.
+    pub nodes: Vec<NodeRequest>,
+    /// `*EL PRINT`, `*EL FILE`, `*ELEMENT OUTPUT`.
+    pub elements: Vec<ElementRequest>,
+    /// `*CONTACT PRINT`, `*CONTACT FILE`, `*CONTACT OUTPUT`.
+    pub contacts: Vec<ContactRequest>,
+}
+
+/// Where a request wants its values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputTarget {
+    /// `... PRINT`: the printed table.
+    Print,
+    /// `... FILE`, `*OUTPUT, FIELD`: field results.
+    Field,
+    /// `*OUTPUT, HISTORY`.
+    History,
+}
+
+/// Rows of single nodes, their totals, or both (`TOTALS=` of CalculiX and Abaqus).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Totals {
+    /// `NO`: rows only.
+    #[default]
+    No,
+    /// `YES`: rows and totals.
+    Yes,
+    /// `ONLY`: totals only.
+    Only,
+}
+
+/// Request for nodal values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeRequest {
+    /// Where to.
+    pub target: OutputTarget,
+    /// Node set; `None` is all nodes.
+    pub set: Option<SetId>,
+    /// Variables in upper case, e.g. `U`, `RF`.
+    pub variables: Vec<String>,
+    /// Every how many increments; the last increment of a step is always written. 0: never.
+    pub frequency: u32,
+    /// Rows, totals or both.
+    pub totals: Totals,
+}
+
+/// Request for element values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementRequest {
+    /// Where to.
+    pub target: OutputTarget,
+    /// Element set; `None` is all elements.
+    pub set: Option<SetId>,
+    /// Variables in upper case, e.g. `S`, `E`.
+    pub variables: Vec<String>,
+    /// Every how many increments. 0: never.
+    pub frequency: u32,
+}
+
+/// Request for contact values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactRequest {
+    /// Where to.
+    pub target: OutputTarget,
+    /// Variables in upper case, e.g. `CSTR`, `CDIS`, `CFN`.
+    pub variables: Vec<String>,
+    /// Every how many increments. 0: never.
+    pub frequency: u32,
+}

@@ -1,0 +1,146 @@
+//! Nodes, elements, sets and surfaces.
+
+use rustc_hash::FxHashMap;
+
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// As an index into the vector that holds these.
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+    };
+}
+
+id!(
+    /// Position of a node in [`Mesh::nodes`].
+    NodeId
+);
+id!(
+    /// Position of an element in [`Mesh::elements`].
+    ElementId
+);
+id!(
+    /// Position of a node set in [`Mesh::node_sets`] or of an element set in [`Mesh::element_sets`].
+    SetId
+);
+id!(
+    /// Position of a surface in [`Mesh::surfaces`].
+    SurfaceId
+);
+id!(
+    /// Position of a material in [`super::Model::materials`].
+    MaterialId
+);
+id!(
+    /// Position of an interaction in [`super::Model::interactions`].
+    InteractionId
+);
+id!(
+    /// Position of an amplitude in [`super::Model::amplitudes`].
+    AmplitudeId
+);
+
+/// Geometry and grouping.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Coordinates [length].
+    pub nodes: Vec<[f64; 3]>,
+    /// Number that the analyst gave to each node.
+    pub node_labels: Vec<u32>,
+    /// Node of each label.
+    pub node_of_label: FxHashMap<u32, NodeId>,
+    /// Elements.
+    pub elements: Vec<Element>,
+    /// Number that the analyst gave to each element.
+    pub element_labels: Vec<u32>,
+    /// Element of each label.
+    pub element_of_label: FxHashMap<u32, ElementId>,
+    /// Material of each element, from the sections.
+    pub element_materials: Vec<MaterialId>,
+    /// Node sets, in order of first definition. Members ascending, without repetition.
+    pub node_sets: Vec<NodeSet>,
+    /// Element sets, in order of first definition. Members ascending, without repetition.
+    pub element_sets: Vec<ElementSet>,
+    /// Surfaces, in order of definition.
+    pub surfaces: Vec<Surface>,
+}
+
+/// Element kinds that can be solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementKind {
+    /// Eight-node brick, volumetric part selectively reduced (mean dilatation).
+    C3D8,
+    /// Eight-node brick, fully integrated: what CalculiX calls C3D8.
+    C3D8Full,
+}
+
+/// One element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Element {
+    /// Formulation.
+    pub kind: ElementKind,
+    /// Corner nodes in the order of the manual: bottom face 1-4, top face 5-8.
+    pub nodes: [NodeId; 8],
+}
+
+/// Local nodes of the faces S1..S6 of a brick, outward by the right-hand rule.
+pub const BRICK_FACES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+
+/// Face of an element; `face` is 0 for S1 (or P1) up to 5.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ElementFace {
+    /// The element.
+    pub element: ElementId,
+    /// Face number less one.
+    pub face: u8,
+}
+
+impl Mesh {
+    /// Corner nodes of a face, outward by the right-hand rule.
+    pub fn face_nodes(&self, face: ElementFace) -> [NodeId; 4] {
+        let nodes = &self.elements[face.element.index()].nodes;
+        BRICK_FACES[face.face as usize].map(|local| nodes[local])
+    }
+}
+
+/// `*NSET`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NodeSet {
+    /// Name as first written; comparisons ignore case.
+    pub name: String,
+    /// Members, ascending by index, no repetition.
+    pub nodes: Vec<NodeId>,
+}
+
+/// `*ELSET`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ElementSet {
+    /// Name as first written; comparisons ignore case.
+    pub name: String,
+    /// Members, ascending by index, no repetition.
+    pub elements: Vec<ElementId>,
+}
+
+/// `*SURFACE`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Surface {
+    /// Name as the analyst wrote it.
+    pub name: String,
+    /// Faces or nodes.
+    pub kind: SurfaceKind,
+}
+
+/// Members of a surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SurfaceKind {
+    /// `TYPE=ELEMENT`: faces, ascending, no repetition.
+    Faces(Vec<ElementFace>),
+    /// `TYPE=NODE`: nodes, ascending, no repetition.
+    Nodes(Vec<NodeId>),
+}

@@ -1,0 +1,128 @@
+//! The model that a deck describes: plain data, nothing computed, nothing mutable after the reader.
+//!
+//! Indices (`NodeId`, `ElementId`, …) count from zero in the order of definition; `label` fields hold the
+//! numbers that the analyst wrote. Units are consistent units.
+
+mod history;
+mod mesh;
+
+pub use history::*;
+pub use mesh::*;
+
+use crate::law::NormalBehavior;
+
+/// What a keyword means where codes disagree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Dialect {
+    /// Decks mean what Abaqus means.
+    #[default]
+    Abaqus,
+    /// Decks mean what CalculiX means, where that changes the answer.
+    Calculix,
+}
+
+/// A whole deck, validated: every reference resolves, every section has its material.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// Text of `*HEADING`, lines joined by a newline.
+    pub heading: String,
+    /// How keywords were read.
+    pub dialect: Dialect,
+    /// Nodes, elements, sets and surfaces.
+    pub mesh: Mesh,
+    /// Materials, in order of definition.
+    pub materials: Vec<Material>,
+    /// Sections: which elements are made of what.
+    pub sections: Vec<SolidSection>,
+    /// Contact interactions, in order of definition.
+    pub interactions: Vec<SurfaceInteraction>,
+    /// Contact pairs, in order of definition.
+    pub pairs: Vec<ContactPair>,
+    /// Amplitude curves.
+    pub amplitudes: Vec<Amplitude>,
+    /// Boundary conditions of the model part (before the first step): all values are zero.
+    pub initial_boundaries: Vec<Boundary>,
+    /// Steps in order. Never empty in a validated model.
+    pub steps: Vec<Step>,
+}
+
+/// Isotropic linear elastic material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Name as the analyst wrote it.
+    pub name: String,
+    /// Young's modulus [pressure], positive.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio, in (-1, 0.5).
+    pub poissons_ratio: f64,
+    /// Mass density [mass/length³]; needed for GRAV only.
+    pub density: Option<f64>,
+}
+
+/// `*SOLID SECTION`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolidSection {
+    /// Elements of the section.
+    pub element_set: SetId,
+    /// Material of the section.
+    pub material: MaterialId,
+}
+
+/// `*SURFACE INTERACTION` with its `*SURFACE BEHAVIOR`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceInteraction {
+    /// Name as the analyst wrote it.
+    pub name: String,
+    /// Normal behaviour: hard or a softened law.
+    pub normal: NormalBehavior,
+    /// Area that each point of a node-based secondary surface stands for [length²]; 1 unless given.
+    pub node_area: f64,
+}
+
+/// `*CONTACT PAIR`, node-to-surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactPair {
+    /// Name used in results and ports: `SECONDARY_PRIMARY`.
+    pub name: String,
+    /// Secondary surface (element-based or node-based): its nodes become contact points.
+    pub secondary: SurfaceId,
+    /// Primary surface (element-based).
+    pub primary: SurfaceId,
+    /// Interaction of the pair.
+    pub interaction: InteractionId,
+    /// Where the pair was defined, for diagnostics.
+    pub place: crate::diagnostic::Place,
+}
+
+/// `*AMPLITUDE`, tabular, relative values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Amplitude {
+    /// Name as the analyst wrote it.
+    pub name: String,
+    /// Which clock the times are measured on.
+    pub clock: AmplitudeClock,
+    /// (time, factor), times strictly increasing, at least one point.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Amplitude {
+    /// Factor at a time on the amplitude's own clock; constant outside the table.
+    pub fn evaluate(&self, time: f64) -> f64 {
+        let after = self.points.partition_point(|&(t, _)| t <= time);
+        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
+            (None, first) => first.map_or(0.0, |&(_, v)| v),
+            (Some((_, v)), None) => v,
+            (Some((t0, v0)), Some(&(t1, v1))) => v0 + (v1 - v0) * ((time - t0) / (t1 - t0)),
+        }
+    }
+}
+
+/// `TIME=` of `*AMPLITUDE`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AmplitudeClock {
+    /// Time since the start of the step (the default).
+    Step,
+    /// Time since the start of the analysis.
+    Total,
+}
