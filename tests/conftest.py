@@ -1,6 +1,7 @@
 """Fixtures of the Python tests."""
 
 import pytest
+
 import support
 
 

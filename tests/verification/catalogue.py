@@ -1,0 +1,126 @@
+"""What is verified: one requirement per case, with its reference and its tolerance.
+
+The table in tests/README.md is made from this list: `python tests/verification/catalogue.py` rewrites it, and a test holds the
+two together.
+"""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+README = HERE.parent / "README.md"
+START, END = "<!-- verification table: generated -->", "<!-- end of the verification table -->"
+
+
+@dataclass(frozen=True)
+class Case:
+    """One verification case."""
+
+    name: str
+    requirement: str
+    reference: str
+    tolerance: str
+
+
+CASES = [
+    Case(
+        "A01",
+        "The solver shall give the exponential law its defining points: zero pressure and slope at clearance c0, p0 at touch.",
+        "closed form",
+        "1e-13",
+    ),
+    Case(
+        "A02", "The solver shall evaluate pressure, slope and energy of the exponential law.", "closed form, 40 digits", "1e-12"
+    ),
+    Case(
+        "A04",
+        "The solver shall continue the exponential law by its tangent beyond 6 c0, without overflow at a million c0.",
+        "closed form",
+        "1e-12",
+    ),
+    Case("A05", "The solver shall limit the slope of the explicit exponential law to stiffness_max.", "Lambert W", "1e-12"),
+    Case("A08", "The solver shall evaluate the linear law.", "closed form", "1e-14"),
+    Case("A09", "The solver shall interpolate the tabular law and continue its last slope.", "trapezoids", "1e-12"),
+    Case("A10", "The solver shall let a table begin at a clearance.", "trapezoids", "1e-12"),
+    Case("A12", "The solver shall let the explicit linear law pull when separation is prevented.", "closed form", "1e-14"),
+    Case("B02", "The solver shall balance an elastic column against each law.", "roots to 40 digits", "1e-10"),
+    Case(
+        "B02-calculix",
+        "The solver shall read EXPONENTIAL as p0 100^(h/c0) in the calculix dialect.",
+        "bisection in the test",
+        "1e-10",
+    ),
+    Case("B04", "The solver shall transmit a uniform pressure through matching meshes uniformly.", "closed form", "1e-10"),
+    Case(
+        "B04-nonmatching",
+        "The solver shall keep the force resultant where meshes do not match.",
+        "equilibrium: reaction above, contact force, reaction below",
+        "1e-10",
+    ),
+    Case(
+        "totals-calculix",
+        "The solver shall find the total forces of punch and Hertz decks with fully integrated bricks.",
+        "independent prototype: hertz 24, 54, 110; punch 9, 16, 26",
+        "0.05 %",
+    ),
+    Case(
+        "totals",
+        "The solver shall find the total forces of punch and Hertz decks with mean-dilatation bricks.",
+        "independent prototype: hertz 54, punch 16",
+        "0.05 %",
+    ),
+    Case(
+        "hertz-theory",
+        "The solver shall find the peak pressure of a long cylinder on a block under hard contact.",
+        "Hertz: p_max = sqrt(F' E* / (pi R)) at the computed force",
+        "2 %",
+    ),
+    Case(
+        "increments",
+        "The solver shall reach the same end state in one increment, in 20, and in automatic ones.",
+        "itself: the problem is path independent",
+        "1e-10",
+    ),
+    Case(
+        "paths",
+        "The condensed and the sparse path shall give the same answer.",
+        "each other",
+        "1e-10",
+    ),
+]
+
+
+def requirement(name):
+    """The case of that name; a test that names an unknown case fails."""
+    return next(case for case in CASES if case.name == name)
+
+
+def table():
+    """Markdown table of the cases."""
+    lines = ["| case | requirement | reference | tolerance |", "|---|---|---|---|"]
+    lines += [f"| {c.name} | {c.requirement} | {c.reference} | {c.tolerance} |" for c in CASES]
+    return "\n".join(lines)
+
+
+def published():
+    """The table as it stands in the README."""
+    text = README.read_text(encoding="utf-8")
+    return text[text.index(START) + len(START) : text.index(END)].strip()
+
+
+def reference(name):
+    """Inputs and expected values of a closed-form case of tests/data/cases.json."""
+    cases = json.loads((HERE.parent / "data" / "cases.json").read_text(encoding="utf-8"))["cases"]
+    return next(case for case in cases if case["id"] == name)
+
+
+def publish():
+    """Rewrites the table in the README."""
+    text = README.read_text(encoding="utf-8")
+    before, after = text[: text.index(START) + len(START)], text[text.index(END) :]
+    README.write_text(f"{before}\n{table()}\n{after}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    publish()
