@@ -44,10 +44,7 @@ class Deck:
     def grid(self, part, xs, ys, zs):
         """Fills a box with bricks. Returns the node labels by (i, j, k) and the element labels by (i, j, k)."""
         node = {
-            (i, j, k): self.node(x, y, z)
-            for k, z in enumerate(zs)
-            for j, y in enumerate(ys)
-            for i, x in enumerate(xs)
+            (i, j, k): self.node(x, y, z) for k, z in enumerate(zs) for j, y in enumerate(ys) for i, x in enumerate(xs)
         }
         element = {}
         for k in range(len(zs) - 1):
@@ -134,7 +131,12 @@ PROBLEMS = {
         punch_mesh, {"PUNCH": 210e3, "FOUNDATION": 70e3}, 50 * 70e3, -0.005, 3, ["NBOT, 1, 3", "NTOP, 1, 2"]
     ),
     "hertz": Problem(
-        hertz_mesh, {"CYLINDER": 210e3, "BLOCK": 2100e3}, 50 * 210e3, -0.02, 2, ["NALL, 3, 3", "NSYM, 1, 1", "NBOT, 2, 2"]
+        hertz_mesh,
+        {"CYLINDER": 210e3, "BLOCK": 2100e3},
+        50 * 210e3,
+        -0.02,
+        2,
+        ["NALL, 3, 3", "NSYM, 1, 1", "NBOT, 2, 2"],
     ),
 }
 
@@ -208,8 +210,12 @@ def parser():
     result.add_argument("deck", help="file to write")
     result.add_argument("--law", choices=LAWS, default="linear")
     result.add_argument("--stiffness", type=float, help="of the linear law [pressure/length]; default 50 E")
-    result.add_argument("--table", type=table, default=table("0:0,2000:0.0005,8000:0.001"), help="p1:h1,p2:h2,... of the tabular law")
-    result.add_argument("--c0", type=float, default=1e-4, help="clearance at zero pressure of the exponential law [length]")
+    result.add_argument(
+        "--table", type=table, default=table("0:0,2000:0.0005,8000:0.001"), help="p1:h1,p2:h2,... of the tabular law"
+    )
+    result.add_argument(
+        "--c0", type=float, default=1e-4, help="clearance at zero pressure of the exponential law [length]"
+    )
     result.add_argument("--p0", type=float, default=100.0, help="pressure at zero clearance of the exponential law")
     result.add_argument("--young", type=float, nargs=2, metavar="E", help="moduli of the upper and the lower body")
     result.add_argument("--poisson", type=float, default=0.3)

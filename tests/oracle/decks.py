@@ -100,7 +100,9 @@ class Builder:
         self.count += len(points)
         self.elements += [[n + first_node for n in e] for e in elements]
         self.bodies.append(list(range(first_element, len(self.elements))))
-        self.faces.append({name: [(e + first_element, f) for e, f in faces] for name, faces in (("b", bottom), ("t", top))})
+        self.faces.append(
+            {name: [(e + first_element, f) for e, f in faces] for name, faces in (("b", bottom), ("t", top))}
+        )
         return {key: n + first_node for key, n in number.items()}
 
 
@@ -211,7 +213,8 @@ def draw(rng, laws):
     rotation = random_rotation(rng)
     build, coordinates, links, holders = geometry(rng, rotation)
     materials = [
-        (float(10 ** rng.uniform(2.5, 4.0)), float(rng.uniform(0.0, 0.45)), float(rng.uniform(0.1, 1.0))) for _ in build.bodies
+        (float(10 ** rng.uniform(2.5, 4.0)), float(rng.uniform(0.0, 0.45)), float(rng.uniform(0.1, 1.0)))
+        for _ in build.bodies
     ]
     deck = Deck(coordinates, build.elements, build.bodies, materials, [])
     for primary, secondary in links:
@@ -283,12 +286,18 @@ def text(deck):
         lines += surface_lines(f"PRI{index}", pair.primary_faces)
         lines += [f"*SURFACE INTERACTION, NAME=INT{index}"]
         lines += [repr(pair.node_area)] if pair.node_area is not None else []
-        lines += [*pair.behavior, f"*CONTACT PAIR, INTERACTION=INT{index}, TYPE=NODE TO SURFACE", f"SEC{index}, PRI{index}"]
+        lines += [
+            *pair.behavior,
+            f"*CONTACT PAIR, INTERACTION=INT{index}, TYPE=NODE TO SURFACE",
+            f"SEC{index}, PRI{index}",
+        ]
     for index, (element, face, _) in enumerate(deck.surface_pressures, 1):
         lines += surface_lines(f"PUSHED{index}", [(element, face)])
     lines += ["*BOUNDARY", *(f"{dof // 3 + 1}, {dof % 3 + 1}" for dof, value in deck.fixed.items() if value == 0.0)]
     lines += ["*STEP", "*STATIC, DIRECT", f"{1.0 / deck.increments!r}, 1.0", "*BOUNDARY"]
-    lines += [f"{dof // 3 + 1}, {dof % 3 + 1}, {dof % 3 + 1}, {value!r}" for dof, value in deck.fixed.items() if value != 0.0]
+    lines += [
+        f"{dof // 3 + 1}, {dof % 3 + 1}, {dof % 3 + 1}, {value!r}" for dof, value in deck.fixed.items() if value != 0.0
+    ]
     if deck.nodal_forces:
         lines += ["*CLOAD", *(f"{dof // 3 + 1}, {dof % 3 + 1}, {value!r}" for dof, value in deck.nodal_forces.items())]
     if deck.face_pressures or deck.gravities:

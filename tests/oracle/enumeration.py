@@ -139,7 +139,9 @@ def solve_exponential(compliance, free, areas, parameters):
         gradient = inverse @ (h - free) + areas * law[:, 0]
         step = -np.linalg.solve(inverse + np.diag(areas * law[:, 1]), gradient)
         factor, before = 1.0, potential(h)
-        while factor > 1e-6 and potential(h + factor * step) > before + 1e-4 * factor * (gradient @ step) + 1e-14 * abs(before):
+        while factor > 1e-6 and potential(h + factor * step) > before + 1e-4 * factor * (gradient @ step) + 1e-14 * abs(
+            before
+        ):
             factor *= 0.5
         h = h + factor * step
         if np.abs(step).max() <= 1e-15 * np.abs(h).max():

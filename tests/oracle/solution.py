@@ -113,5 +113,12 @@ class Oracle:
         energy = 0.5 * full @ inner
         shape = (-1, 3)
         return Solution(
-            full.reshape(shape), reaction.reshape(shape), forces / self.areas, overclosure, self.areas, pair_forces, energy, tried
+            full.reshape(shape),
+            reaction.reshape(shape),
+            forces / self.areas,
+            overclosure,
+            self.areas,
+            pair_forces,
+            energy,
+            tried,
         )

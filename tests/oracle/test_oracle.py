@@ -40,7 +40,9 @@ def failures(reports):
     for report in reports:
         bad = {k: v for k, v in report.differences.items() if not v <= TOLERANCE}
         if bad:
-            lines.append(f"seed {report.seed} ({report.dialect}, {report.points} points, {report.closed} closed): {bad}")
+            lines.append(
+                f"seed {report.seed} ({report.dialect}, {report.points} points, {report.closed} closed): {bad}"
+            )
     return lines
 
 
@@ -49,7 +51,9 @@ def test_500_random_decks_agree_with_enumeration():
     reports = in_parallel(compare, range(DECKS))
     found = failures(reports)
     assert not found, f"{len(found)} of {DECKS} decks differ:\n" + "\n".join(found[:20])
-    assert sum(0 < r.closed < r.points for r in reports) > DECKS // 4, "too few decks are partly closed to prove anything"
+    assert sum(0 < r.closed < r.points for r in reports) > DECKS // 4, (
+        "too few decks are partly closed to prove anything"
+    )
     assert {r.dialect for r in reports} == {"abaqus", "calculix"}
     assert max(r.points for r in reports) == 10
 

@@ -37,7 +37,9 @@ def stack(blocks, law, step):
                 for i in range(counts[0] + 1):
                     node_number += 1
                     numbers[i, j, k] = node_number
-                    at = [block.low[a] + (block.high[a] - block.low[a]) * n / counts[a] for a, n in enumerate((i, j, k))]
+                    at = [
+                        block.low[a] + (block.high[a] - block.low[a]) * n / counts[a] for a, n in enumerate((i, j, k))
+                    ]
                     lines.append(f"{node_number}, " + ", ".join(repr(v) for v in at))
         lines.append(f"*ELEMENT, TYPE=C3D8, ELSET=E{name}")
         for k in range(counts[2]):

@@ -84,7 +84,10 @@ PUSHED = ["*BOUNDARY", "TOP_HIGH, 3, 3, -0.0975"]
 def test_b04_matching_meshes_transmit_a_uniform_pressure(write_deck, tmp_path):
     case = reference("B04")
     inputs, expected = case["inputs"], case["expected"]
-    down = inputs["p"] * (inputs["L_top"] / inputs["E_top"] + inputs["L_bottom"] / inputs["E_bottom"]) + inputs["p"] / inputs["k"]
+    down = (
+        inputs["p"] * (inputs["L_top"] / inputs["E_top"] + inputs["L_bottom"] / inputs["E_bottom"])
+        + inputs["p"] / inputs["k"]
+    )
     assert down == pytest.approx(expected["top_displacement_down"], rel=1e-14)
     deck = write_deck(stack(stacked((2, 2, 3), (2, 2, 1)), LINEAR_100, b04_step(PUSHED)))
     result = support.run(deck, tmp_path)
@@ -99,7 +102,9 @@ def test_b04_matching_meshes_transmit_a_uniform_pressure(write_deck, tmp_path):
 def test_b04_nonmatching_meshes_keep_the_resultant(write_deck, tmp_path):
     deck = write_deck(stack(stacked((3, 3, 3), (2, 2, 2)), LINEAR_100, b04_step(PUSHED)))
     row = support.run(deck, tmp_path).last("history")[0]
-    above, below, contact = (float(row[name]) for name in ("RF3[TOP_HIGH]", "RF3[BOTTOM_LOW]", "CFN3[TOP_DOWN_BOTTOM_UP]"))
+    above, below, contact = (
+        float(row[name]) for name in ("RF3[TOP_HIGH]", "RF3[BOTTOM_LOW]", "CFN3[TOP_DOWN_BOTTOM_UP]")
+    )
     assert contact == pytest.approx(-above, rel=1e-10)
     assert below == pytest.approx(-above, rel=1e-10)
     # Node-to-surface contact does not pass the patch test on these meshes; its force stays near the uniform one.
