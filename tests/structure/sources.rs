@@ -115,7 +115,11 @@ fn laws_import_nothing_of_the_engine() {
     for (path, code) in sources("daemon/engine/src/law") {
         for (at, _) in code.match_indices("crate::") {
             let rest = &code[at + "crate::".len()..];
-            assert!(rest.starts_with("law"), "{path} imports crate::{}", rest.split_whitespace().next().unwrap_or_default());
+            assert!(
+                rest.starts_with("law"),
+                "{path} imports crate::{}",
+                rest.split_whitespace().next().unwrap_or_default()
+            );
         }
         assert!(!names(&code, "faer"), "{path} names faer");
     }
