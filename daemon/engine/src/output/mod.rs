@@ -1,1 +1,176 @@
-//! Result files.
+//! Result files of a run, written while it runs: tables as CSV, fields for ParaView, the printed tables, the report.
+//!
+//! Every file is flushed at the end of each increment, so that a run that is killed keeps what it had. The first failure to write
+//! ends the writing; [`ResultWriter::finish`] reports it with the name of the file.
+
+mod contact_table;
+mod file;
+mod frames;
+mod history_table;
+mod node_table;
+mod number;
+mod plan;
+mod printed;
+mod report;
+mod vtu;
+
+pub use file::OutputError;
+pub use report::{Finding, RunOutcome, RunReport, StepSummary, write_report};
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::model::{Model, Procedure, Step};
+use crate::simulation::{IncrementReport, NodalSolution, PreparedModel, Simulation, Watch};
+
+use contact_table::ContactTable;
+use frames::Frames;
+use history_table::HistoryTable;
+use node_table::NodeTable;
+use plan::{Moment, Plan};
+use printed::Printed;
+
+/// Writes the results of a job into a directory, increment by increment.
+///
+/// `JOB_history.csv` has one row per increment. The other files follow the output requests of the deck: contact rows and frames
+/// of a step that asks for none are written at its last increment. Nodal values are recovered (one solve) at most once per
+/// increment, and only when a row or a frame needs them.
+pub struct ResultWriter {
+    prepared: Arc<PreparedModel>,
+    history: HistoryTable,
+    contact: ContactTable,
+    nodes: NodeTable,
+    printed: Printed,
+    frames: Frames,
+    /// The last increment, if the requests of the deck did not make it a written one in every respect.
+    unfinished: Option<IncrementReport>,
+    error: Option<OutputError>,
+}
+
+impl ResultWriter {
+    /// Creates the files of `job` in `directory`, which must exist; results of an earlier run of the same name are replaced.
+    pub fn create(
+        directory: &Path,
+        job: &str,
+        prepared: Arc<PreparedModel>,
+    ) -> Result<Self, OutputError> {
+        report::remove(directory, job)?;
+        Ok(Self {
+            history: HistoryTable::create(directory, job, &prepared)?,
+            contact: ContactTable::create(directory, job)?,
+            nodes: NodeTable::create(directory, job)?,
+            printed: Printed::create(directory, job, &prepared)?,
+            frames: Frames::create(directory, job, prepared.model())?,
+            prepared,
+            unfinished: None,
+            error: None,
+        })
+    }
+
+    /// Whether writing has failed; nothing is written after that.
+    pub fn failed(&self) -> bool {
+        self.error.is_some()
+    }
+
+    /// Ends the writing. A run that stopped early gets the rows and the frame that the last increment of a step gets.
+    pub fn finish(mut self, simulation: &Simulation) -> Result<(), OutputError> {
+        if let Some(error) = self.error {
+            return Err(error);
+        }
+        if let Some(increment) = self.unfinished.take() {
+            self.write(simulation, &increment, Moment::Stopped)?;
+        }
+        Ok(())
+    }
+
+    fn write(
+        &mut self,
+        simulation: &Simulation,
+        increment: &IncrementReport,
+        moment: Moment,
+    ) -> Result<(), OutputError> {
+        let prepared = Arc::clone(&self.prepared);
+        let model = prepared.model();
+        let Some(step) = step_of(model, increment) else {
+            return Ok(());
+        };
+        let plan = Plan::new(step, increment.increment, moment);
+        let history = simulation.history();
+        let contact = simulation.contact_results();
+        if moment != Moment::Stopped {
+            self.history.row(increment, &history)?;
+        }
+        if plan.contact_rows {
+            self.contact.rows(&prepared, increment, contact)?;
+        }
+        let fields = plan.needs_solution().then(|| {
+            let solution = simulation.recover();
+            let stress = if plan.needs_stress() {
+                simulation.nodal_stress(&solution)
+            } else {
+                Vec::new()
+            };
+            NodalFields { solution, stress }
+        });
+        if let Some(fields) = &fields {
+            self.nodes
+                .rows(model, increment, &plan.node_rows, &fields.solution)?;
+            if plan.frame {
+                self.frames
+                    .write(&prepared, increment.time, fields, contact)?;
+            }
+        }
+        self.printed.write(
+            &prepared,
+            increment,
+            &plan,
+            &history,
+            contact,
+            fields.as_ref(),
+        )
+    }
+}
+
+impl Watch for ResultWriter {
+    fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
+        if self.error.is_some() {
+            return;
+        }
+        let last = step_of(self.prepared.model(), report).is_some_and(|step| {
+            // The clock of a step is a sum of increments; its end is hit to rounding.
+            report.step_time >= period(&step.procedure) * (1.0 - 1e-9)
+        });
+        let moment = if last {
+            Moment::LastOfStep
+        } else {
+            Moment::Within
+        };
+        self.unfinished = (!last).then(|| report.clone());
+        if let Err(error) = self.write(simulation, report, moment) {
+            self.error = Some(error);
+        }
+    }
+
+    /// Results that cannot be written are not worth computing.
+    fn cancelled(&self) -> bool {
+        self.failed()
+    }
+}
+
+/// The step that an increment belongs to.
+fn step_of<'a>(model: &'a Model, increment: &IncrementReport) -> Option<&'a Step> {
+    model.steps.get((increment.step as usize).checked_sub(1)?)
+}
+
+/// Length of a step [time].
+fn period(procedure: &Procedure) -> f64 {
+    match procedure {
+        Procedure::Static(control) => control.period,
+    }
+}
+
+/// What one recovery gives; stress is empty when nothing needs it.
+struct NodalFields {
+    solution: NodalSolution,
+    stress: Vec<[f64; 6]>,
+}

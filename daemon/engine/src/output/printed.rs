@@ -1,0 +1,358 @@
+//! `JOB.dat`: the printed tables, in the layout that analysts know.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::contact_table::status_code;
+use super::file::{OutputError, TextFile};
+use super::number::printed;
+use super::plan::Plan;
+use super::{NodalFields, period, step_of};
+use crate::model::{
+    ElementRequest, Model, NodeId, NodeRequest, Procedure, Step, SurfaceId, Totals,
+};
+use crate::simulation::{ContactPointResult, HistoryRow, IncrementReport, PreparedModel};
+
+/// Writes the summary of an increment and the tables that are due.
+pub(super) struct Printed {
+    file: TextFile,
+    /// Step whose heading was printed last.
+    step: u32,
+    /// Sets whose reaction totals are in the history, in its order.
+    total_sets: Vec<String>,
+}
+
+impl Printed {
+    pub(super) fn create(
+        directory: &Path,
+        job: &str,
+        prepared: &PreparedModel,
+    ) -> Result<Self, OutputError> {
+        let mut file = TextFile::create(directory, job, ".dat")?;
+        file.append(&title(prepared))?;
+        let total_sets = prepared
+            .total_set_names()
+            .into_iter()
+            .map(str::to_owned)
+            .collect();
+        Ok(Self {
+            file,
+            step: 0,
+            total_sets,
+        })
+    }
+
+    pub(super) fn write(
+        &mut self,
+        prepared: &PreparedModel,
+        increment: &IncrementReport,
+        plan: &Plan,
+        history: &HistoryRow,
+        contact: &[ContactPointResult],
+        fields: Option<&NodalFields>,
+    ) -> Result<(), OutputError> {
+        let tables = !(plan.node_prints.is_empty()
+            && plan.element_prints.is_empty()
+            && plan.contact_prints.is_empty());
+        let model = prepared.model();
+        let Some(step) = step_of(model, increment).filter(|_| tables || plan.end) else {
+            return Ok(());
+        };
+        let mut text = String::new();
+        if increment.step != self.step {
+            self.step = increment.step;
+            step_heading(&mut text, step, increment);
+        }
+        summary(&mut text, step, increment);
+        if !plan.contact_prints.is_empty() {
+            contact_tables(&mut text, prepared, history, contact);
+        }
+        if let Some(fields) = fields.filter(|_| !plan.element_prints.is_empty()) {
+            text.push_str("\n\n                              E L E M E N T   O U T P U T\n");
+            for request in &plan.element_prints {
+                stress_table(&mut text, model, request, &fields.stress);
+            }
+        }
+        if !plan.node_prints.is_empty() {
+            text.push_str("\n\n                              N O D E   O U T P U T\n");
+            for request in &plan.node_prints {
+                self.node_table(&mut text, model, request, history, fields);
+            }
+        }
+        self.file.append(&text)
+    }
+
+    fn node_table(
+        &self,
+        text: &mut String,
+        model: &Model,
+        request: &NodeRequest,
+        history: &HistoryRow,
+        fields: Option<&NodalFields>,
+    ) {
+        let set = request.set.map(|set| &model.mesh.node_sets[set.index()]);
+        let whom = set.map_or_else(
+            || "ALL NODES".to_owned(),
+            |s| format!("NODES OF NODE SET {}", s.name),
+        );
+        let everything: Vec<NodeId>;
+        let nodes = match set {
+            Some(set) => &set.nodes,
+            None => {
+                everything = (0..model.mesh.nodes.len() as u32).map(NodeId).collect();
+                &everything
+            }
+        };
+        for variable in &request.variables {
+            let totals = (variable == "RF")
+                .then(|| set.and_then(|s| self.total(&s.name, history)))
+                .flatten();
+            if request.totals != Totals::Only
+                && let Some(fields) = fields
+            {
+                let values = match variable.as_str() {
+                    "U" => &fields.solution.displacement,
+                    "RF" => &fields.solution.reaction,
+                    _ => continue,
+                };
+                let columns = [1, 2, 3].map(|i| format!("{variable}{i}"));
+                let mut table = Table::new(
+                    &format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}"),
+                    None,
+                    &columns,
+                );
+                for node in nodes {
+                    table.row(
+                        model.mesh.node_labels[node.index()],
+                        None,
+                        &values[node.index()],
+                    );
+                }
+                table.finish(text);
+            }
+            if request.totals != Totals::No
+                && let Some(total) = totals
+            {
+                let _ = writeln!(text, "\n   TOTAL FORCE FOR {whom}\n");
+                let _ = writeln!(text, "            {:>15}{:>15}{:>15}", "RF1", "RF2", "RF3");
+                let _ = writeln!(text, "      TOTAL {}", total.map(printed).concat());
+            }
+        }
+    }
+
+    fn total(&self, set: &str, history: &HistoryRow) -> Option<[f64; 3]> {
+        let i = self
+            .total_sets
+            .iter()
+            .position(|name| name.eq_ignore_ascii_case(set))?;
+        history.reactions.get(i).copied()
+    }
+}
+
+fn title(prepared: &PreparedModel) -> String {
+    let model = prepared.model();
+    let mut text = format!("\n   OVERCLOSURE {}\n\n", env!("CARGO_PKG_VERSION"));
+    for line in model.heading.lines() {
+        // Writing to a string does not fail, here and below.
+        let _ = writeln!(text, "   {line}");
+    }
+    text.push_str("\n                              P R O B L E M   S I Z E\n\n");
+    for (what, count) in [
+        ("ELEMENTS", model.mesh.elements.len()),
+        ("NODES", model.mesh.nodes.len()),
+        ("CONTACT PAIRS", model.pairs.len()),
+        ("CONTACT POINTS", prepared.contact_points().len()),
+        ("STEPS", model.steps.len()),
+    ] {
+        let _ = writeln!(text, "   {:<40}{count:>12}", format!("NUMBER OF {what} IS"));
+    }
+    text
+}
+
+fn step_heading(text: &mut String, step: &Step, increment: &IncrementReport) {
+    let procedure = match step.procedure {
+        Procedure::Static(_) => "STATIC ANALYSIS",
+    };
+    let spaced: String = procedure.chars().flat_map(|c| [c, ' ']).collect();
+    let _ = writeln!(
+        text,
+        "\n\n                    S T E P   {:>5}     {spaced}\n\n   {}",
+        increment.step, step.name
+    );
+}
+
+fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
+    let _ = writeln!(
+        text,
+        "\n\n                              INCREMENT {:>5} SUMMARY\n",
+        increment.increment
+    );
+    let pair = |text: &mut String, a: &str, x: f64, b: &str, y: f64| {
+        let _ = writeln!(text, " {a:<26}{},  {b:<28}{}", printed(x), printed(y));
+    };
+    let fraction = increment.step_time / period(&step.procedure);
+    pair(
+        text,
+        "TIME INCREMENT COMPLETED",
+        increment.increment_size,
+        "FRACTION OF STEP COMPLETED",
+        fraction,
+    );
+    pair(
+        text,
+        "STEP TIME COMPLETED",
+        increment.step_time,
+        "TOTAL TIME COMPLETED",
+        increment.time,
+    );
+}
+
+fn contact_tables(
+    text: &mut String,
+    prepared: &PreparedModel,
+    history: &HistoryRow,
+    contact: &[ContactPointResult],
+) {
+    let model = prepared.model();
+    text.push_str("\n\n                              C O N T A C T   O U T P U T\n");
+    let columns = ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"].map(String::from);
+    for (i, pair) in model.pairs.iter().enumerate() {
+        let name = |surface: SurfaceId| &model.mesh.surfaces[surface.index()].name;
+        let heading = format!(
+            "THE FOLLOWING TABLE IS PRINTED FOR ALL SECONDARY NODES IN CONTACT PAIR ({},{})",
+            name(pair.secondary),
+            name(pair.primary)
+        );
+        let mut table = Table::new(&heading, Some("STATUS"), &columns);
+        for (point, result) in prepared
+            .contact_points()
+            .iter()
+            .zip(contact)
+            .filter(|(p, _)| p.pair as usize == i)
+        {
+            let ContactPointResult {
+                status,
+                clearance,
+                pressure,
+                shear,
+                slip,
+            } = *result;
+            let values = [pressure, shear[0], shear[1], clearance, slip[0], slip[1]];
+            table.row(
+                model.mesh.node_labels[point.node.index()],
+                Some(status_code(status)),
+                &values,
+            );
+        }
+        table.finish(text);
+        if let Some(totals) = history.pairs.get(i) {
+            let _ = writeln!(
+                text,
+                "\n   TOTAL FORCE DUE TO CONTACT PRESSURE AND AREA IN CONTACT\n"
+            );
+            let names = ["CFN1", "CFN2", "CFN3", "CFNM", "CAREA"];
+            let _ = writeln!(
+                text,
+                "            {}",
+                names.map(|n| format!("{n:>15}")).concat()
+            );
+            let [x, y, z] = totals.force;
+            let values = [x, y, z, totals.force_magnitude, totals.area];
+            let _ = writeln!(text, "      TOTAL {}", values.map(printed).concat());
+        }
+    }
+}
+
+fn stress_table(text: &mut String, model: &Model, request: &ElementRequest, stress: &[[f64; 6]]) {
+    if !request.variables.iter().any(|v| v == "S") {
+        return;
+    }
+    let mesh = &model.mesh;
+    let (whom, mut nodes): (String, Vec<NodeId>) =
+        match request.set.map(|s| &mesh.element_sets[s.index()]) {
+            Some(set) => (
+                format!("ELEMENT SET {}", set.name),
+                set.elements
+                    .iter()
+                    .flat_map(|e| mesh.elements[e.index()].nodes)
+                    .collect(),
+            ),
+            None => (
+                "ALL ELEMENTS".to_owned(),
+                mesh.elements.iter().flat_map(|e| e.nodes).collect(),
+            ),
+        };
+    nodes.sort_unstable();
+    nodes.dedup();
+    let columns = ["S11", "S22", "S33", "S12", "S13", "S23"].map(String::from);
+    let heading = format!(
+        "THE FOLLOWING TABLE IS PRINTED FOR THE NODES OF {whom} (STRESSES AVERAGED AT NODES)"
+    );
+    let mut table = Table::new(&heading, None, &columns);
+    for node in nodes {
+        table.row(mesh.node_labels[node.index()], None, &stress[node.index()]);
+    }
+    table.finish(text);
+}
+
+/// A table of nodes with the extremes of its columns.
+struct Table {
+    text: String,
+    status: bool,
+    /// Per column: (least, its node), (greatest, its node).
+    extremes: Vec<[(f64, u32); 2]>,
+}
+
+impl Table {
+    fn new(heading: &str, status: Option<&str>, columns: &[String]) -> Self {
+        let mut text = format!("\n   {heading}\n\n {:>11}", "NODE");
+        if let Some(status) = status {
+            let _ = write!(text, " {status:>6}");
+        }
+        for column in columns {
+            let _ = write!(text, "{column:>15}");
+        }
+        text.push_str("\n\n");
+        Self {
+            text,
+            status: status.is_some(),
+            extremes: Vec::new(),
+        }
+    }
+
+    fn row(&mut self, label: u32, status: Option<&str>, values: &[f64]) {
+        let _ = write!(self.text, " {label:>11}");
+        if let Some(status) = status {
+            let _ = write!(self.text, " {status:>6}");
+        }
+        if self.extremes.is_empty() {
+            self.extremes = values.iter().map(|&v| [(v, label); 2]).collect();
+        }
+        for (&value, [least, greatest]) in values.iter().zip(&mut self.extremes) {
+            self.text.push_str(&printed(value));
+            if value < least.0 {
+                *least = (value, label);
+            }
+            if value > greatest.0 {
+                *greatest = (value, label);
+            }
+        }
+        self.text.push('\n');
+    }
+
+    fn finish(mut self, text: &mut String) {
+        let gap = if self.status { "       " } else { "" };
+        for (which, name) in [(1, "MAXIMUM"), (0, "MINIMUM")] {
+            let _ = write!(self.text, "\n {name:>11}{gap}");
+            for column in &self.extremes {
+                self.text.push_str(&printed(column[which].0));
+            }
+            let _ = write!(self.text, "\n {:>11}{gap}", "AT NODE");
+            for column in &self.extremes {
+                let _ = write!(self.text, "{:>15}", column[which].1);
+            }
+        }
+        self.text.push('\n');
+        text.push_str(&self.text);
+    }
+}

@@ -1,0 +1,182 @@
+//! `JOB.json`: how the run ended and what it cost.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::file::OutputError;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::model::Dialect;
+use crate::simulation::{StepReport, WorkCounts};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RunOutcome {
+    /// Every step to its end.
+    Completed,
+    /// Before the end: not converged, or told to stop.
+    Stopped,
+}
+
+/// The report of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunReport {
+    /// Name of the job.
+    pub job: String,
+    /// The deck.
+    pub deck: String,
+    /// Version of the program.
+    pub version: String,
+    /// How keywords were read.
+    pub dialect: Dialect,
+    /// How it ended.
+    pub outcome: RunOutcome,
+    /// Why it stopped; absent when it did not.
+    pub reason: Option<String>,
+    /// Total time of the last good increment.
+    pub time_reached: f64,
+    /// Nodes, elements and contact points.
+    pub size: ModelSize,
+    /// Inputs that were set instead of those of the deck.
+    pub inputs_set: BTreeMap<String, f64>,
+    /// Per step begun, in order.
+    pub steps: Vec<StepSummary>,
+    /// Findings about the deck.
+    pub diagnostics: Vec<Finding>,
+    /// Findings of the audit of the solution.
+    pub audit: Vec<String>,
+    /// Wall seconds by phase.
+    pub wall_seconds: BTreeMap<String, f64>,
+}
+
+/// Size of a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ModelSize {
+    /// Nodes.
+    pub nodes: usize,
+    /// Elements.
+    pub elements: usize,
+    /// Contact points.
+    pub contact_points: usize,
+}
+
+/// What a step did.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepSummary {
+    /// Name of the step.
+    pub name: String,
+    /// `*STATIC`, ….
+    pub procedure: &'static str,
+    /// Total time reached.
+    pub time_reached: f64,
+    /// Increments completed.
+    pub increments: u32,
+    /// Equilibrium iterations.
+    pub equilibrium_iterations: u32,
+    /// Iterations that changed a contact status.
+    pub severe_discontinuity_iterations: u32,
+    /// Attempts that failed.
+    pub cutbacks: u32,
+    /// Sparse factorisations.
+    pub factorizations: u32,
+}
+
+impl From<StepReport> for StepSummary {
+    fn from(report: StepReport) -> Self {
+        let StepReport {
+            name,
+            procedure,
+            time_reached,
+            counts,
+        } = report;
+        let WorkCounts {
+            increments,
+            equilibrium_iterations,
+            severe_discontinuity_iterations,
+            cutbacks,
+            factorizations,
+        } = counts;
+        Self {
+            name,
+            procedure,
+            time_reached,
+            increments,
+            equilibrium_iterations,
+            severe_discontinuity_iterations,
+            cutbacks,
+            factorizations,
+        }
+    }
+}
+
+/// A finding about the deck.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// Error or warning.
+    pub severity: Severity,
+    /// File; absent for text without one.
+    pub file: Option<PathBuf>,
+    /// Line from 1; 0 when it is about the deck as a whole.
+    pub line: u32,
+    /// Keyword with its star; may be empty.
+    pub keyword: String,
+    /// What is wrong.
+    pub message: String,
+    /// What can be done.
+    pub remedy: String,
+}
+
+impl From<&Diagnostic> for Finding {
+    fn from(diagnostic: &Diagnostic) -> Self {
+        let Diagnostic {
+            severity,
+            place,
+            keyword,
+            message,
+            remedy,
+        } = diagnostic;
+        Self {
+            severity: *severity,
+            file: place.file.as_deref().cloned(),
+            line: place.line,
+            keyword: keyword.clone(),
+            message: message.clone(),
+            remedy: remedy.clone(),
+        }
+    }
+}
+
+/// Writes the report in one piece: it is there as a whole or not at all.
+pub fn write_report(directory: &Path, job: &str, report: &RunReport) -> Result<(), OutputError> {
+    let path = report_path(directory, job);
+    let temporary = directory.join(format!("{job}.json.part"));
+    write_json(&temporary, report).map_err(OutputError::at(&temporary))?;
+    fs::rename(&temporary, &path).map_err(OutputError::at(&path))
+}
+
+/// Removes the report of an earlier run, which would outlive a run that is killed.
+pub(super) fn remove(directory: &Path, job: &str) -> Result<(), OutputError> {
+    let path = report_path(directory, job);
+    match fs::remove_file(&path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(OutputError {
+            path,
+            source: error,
+        }),
+        Ok(()) | Err(_) => Ok(()),
+    }
+}
+
+fn report_path(directory: &Path, job: &str) -> PathBuf {
+    directory.join(format!("{job}.json"))
+}
+
+fn write_json(path: &Path, report: &RunReport) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    serde_json::to_writer_pretty(&mut file, report)?;
+    file.write_all(b"\n")?;
+    file.flush()
+}
