@@ -10,12 +10,13 @@ mod history_table;
 mod node_table;
 mod number;
 mod plan;
+mod port_table;
 mod printed;
 mod report;
 mod vtu;
 
 pub use file::OutputError;
-pub use report::{Finding, RunOutcome, RunReport, StepSummary, write_report};
+pub use report::{Finding, ModelSize, RunOutcome, RunReport, StepSummary, write_report};
 
 use std::path::Path;
 use std::sync::Arc;
@@ -28,16 +29,18 @@ use frames::Frames;
 use history_table::HistoryTable;
 use node_table::NodeTable;
 use plan::{Moment, Plan};
+use port_table::PortTable;
 use printed::Printed;
 
 /// Writes the results of a job into a directory, increment by increment.
 ///
-/// `JOB_history.csv` has one row per increment. The other files follow the output requests of the deck: contact rows and frames
-/// of a step that asks for none are written at its last increment. Nodal values are recovered (one solve) at most once per
+/// `JOB_history.csv` and `JOB_ports.csv` have one row per increment. The other files follow the output requests of the
+/// deck: contact rows and frames of a step that asks for none are written at its last increment. Nodal values are recovered (one solve) at most once per
 /// increment, and only when a row or a frame needs them.
 pub struct ResultWriter {
     prepared: Arc<PreparedModel>,
     history: HistoryTable,
+    ports: PortTable,
     contact: ContactTable,
     nodes: NodeTable,
     printed: Printed,
@@ -57,6 +60,7 @@ impl ResultWriter {
         report::remove(directory, job)?;
         Ok(Self {
             history: HistoryTable::create(directory, job, &prepared)?,
+            ports: PortTable::create(directory, job, &prepared)?,
             contact: ContactTable::create(directory, job)?,
             nodes: NodeTable::create(directory, job)?,
             printed: Printed::create(directory, job, &prepared)?,
@@ -99,6 +103,7 @@ impl ResultWriter {
         let contact = simulation.contact_results();
         if moment != Moment::Stopped {
             self.history.row(increment, &history)?;
+            self.ports.row(increment, simulation)?;
         }
         if plan.contact_rows {
             self.contact.rows(&prepared, increment, contact)?;
