@@ -70,11 +70,7 @@ fn write(law: &dyn PressureLaw, overclosures: &Overclosures) -> std::io::Result<
     for i in 0..overclosures.count() {
         let h = overclosures.at(i);
         let point = law.evaluate(h);
-        writeln!(
-            out,
-            "{h:.16e},{:.16e},{:.16e},{:.16e}",
-            point.pressure, point.stiffness, point.energy
-        )?;
+        writeln!(out, "{h:.16e},{:.16e},{:.16e},{:.16e}", point.pressure, point.stiffness, point.energy)?;
     }
     out.flush()
 }
@@ -92,34 +88,20 @@ impl Overclosures {
             let list = text.split(',').map(number).collect::<Result<_, _>>()?;
             return Ok(Self::List(list));
         }
-        let parts = text
-            .split(':')
-            .map(number)
-            .collect::<Result<Vec<f64>, _>>()?;
+        let parts = text.split(':').map(number).collect::<Result<Vec<f64>, _>>()?;
         let [from, to, step] = parts[..] else {
-            return Err(format!(
-                "a range is FROM:TO:STEP, this one has {} parts",
-                parts.len()
-            ));
+            return Err(format!("a range is FROM:TO:STEP, this one has {} parts", parts.len()));
         };
         let steps = (to - from) / step;
         if step == 0.0 || steps < 0.0 {
-            return Err(format!(
-                "a step of {step} does not lead from {from} to {to}"
-            ));
+            return Err(format!("a step of {step} does not lead from {from} to {to}"));
         }
         // TO counts as reached when it is missed by rounding alone.
         let rows = (steps * (1.0 + 1e-12) + 1e-9).floor() + 1.0;
         if !(rows <= ROWS_MAX) {
-            return Err(format!(
-                "that is {rows:e} rows; at most {ROWS_MAX:e} are written"
-            ));
+            return Err(format!("that is {rows:e} rows; at most {ROWS_MAX:e} are written"));
         }
-        Ok(Self::Range {
-            from,
-            step,
-            count: rows as usize,
-        })
+        Ok(Self::Range { from, step, count: rows as usize })
     }
 
     fn count(&self) -> usize {
@@ -150,13 +132,7 @@ mod tests {
 
     #[test]
     fn a_range_includes_its_end_within_rounding() {
-        for (text, count) in [
-            ("0:1:0.1", 11),
-            ("-0.01:0.03:0.01", 5),
-            ("0:1:0.3", 4),
-            ("1:0:-0.5", 3),
-            ("2:2:1", 1),
-        ] {
+        for (text, count) in [("0:1:0.1", 11), ("-0.01:0.03:0.01", 5), ("0:1:0.3", 4), ("1:0:-0.5", 3), ("2:2:1", 1)] {
             assert_eq!(Overclosures::parse(text).unwrap().count(), count, "{text}");
         }
         let range = Overclosures::parse("-1:1:0.1").unwrap();
@@ -165,26 +141,12 @@ mod tests {
 
     #[test]
     fn a_list_keeps_its_numbers() {
-        assert_eq!(
-            Overclosures::parse("-0.005,0, 1e300").unwrap(),
-            Overclosures::List(vec![-0.005, 0.0, 1e300])
-        );
+        assert_eq!(Overclosures::parse("-0.005,0, 1e300").unwrap(), Overclosures::List(vec![-0.005, 0.0, 1e300]));
     }
 
     #[test]
     fn nonsense_is_refused() {
-        for text in [
-            "",
-            "a",
-            "0:1",
-            "0:1:0",
-            "0:1:-1",
-            "0:1:1e-12",
-            "nan",
-            "0:inf:1",
-            "1,,2",
-            "0:1:1:1",
-        ] {
+        for text in ["", "a", "0:1", "0:1:0", "0:1:-1", "0:1:1e-12", "nan", "0:inf:1", "1,,2", "0:1:1:1"] {
             assert!(Overclosures::parse(text).is_err(), "{text}");
         }
     }

@@ -7,6 +7,12 @@ pub mod pack;
 pub mod remote;
 pub mod run;
 
+mod clock;
+mod interrupt;
+mod monitor;
+mod progress;
+mod settings;
+
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -46,10 +52,7 @@ pub fn complain(text: &str) {
 /// Text on stdout. A reader that went away (`| head`) ends the verb quietly; another failure is ours.
 pub fn print(text: &str) -> Result<(), Exit> {
     let mut stdout = std::io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-        .map_err(|error| closed(&error))
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| closed(&error))
 }
 
 /// What a failed write to stdout means.

@@ -24,15 +24,30 @@ pub fn open_deck(path: &Path, dialect: Dialect) -> Result<OpenedDeck, Exit> {
     })?;
     report(&reading.diagnostics);
     match reading.model {
-        Some(model) => Ok(OpenedDeck {
-            model,
-            diagnostics: reading.diagnostics,
-        }),
+        Some(model) => Ok(OpenedDeck { model, diagnostics: reading.diagnostics }),
         None => {
             complain(&count(path, &reading.diagnostics));
             Err(Exit::InputWrong)
         }
     }
+}
+
+/// Text of the port declarations: the named file, else `ports.toml` beside the deck, else none.
+pub fn read_ports(named: Option<&Path>, deck: &Path) -> Result<Option<String>, Exit> {
+    let path = match named {
+        Some(path) => path.to_owned(),
+        None => {
+            let beside = deck.with_file_name("ports.toml");
+            if !beside.is_file() {
+                return Ok(None);
+            }
+            beside
+        }
+    };
+    std::fs::read_to_string(&path).map(Some).map_err(|error| {
+        complain(&format!("error: cannot read {}: {error}", path.display()));
+        Exit::InputWrong
+    })
 }
 
 /// Every finding on stderr, one per line.
@@ -48,10 +63,5 @@ pub fn count(path: &Path, diagnostics: &[Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|d| d.is_error()).count();
     let warnings = diagnostics.len() - errors;
     let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
-    format!(
-        "{}: {}, {}",
-        path.display(),
-        plural(errors, "error"),
-        plural(warnings, "warning")
-    )
+    format!("{}: {}, {}", path.display(), plural(errors, "error"), plural(warnings, "warning"))
 }

@@ -1,13 +1,29 @@
 //! `overclosure run`: solves a deck and writes results.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use clap::Args;
+use overclosure::diagnostic::Diagnostic;
+use overclosure::model::Dialect;
+use overclosure::output::{Finding, ModelSize, OutputError, ResultWriter, RunOutcome, RunReport, write_report};
+use overclosure::port::PortList;
+use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Simulation};
 
-use super::{DialectArg, Exit, PathArg};
+use super::clock::{Clock, Stage};
+use super::monitor::Monitor;
+use super::open::{open_deck, read_ports, report};
+use super::progress::Progress;
+use super::{DialectArg, Exit, PathArg, complain, interrupt, settings};
 
 /// Arguments of `overclosure run`.
 #[derive(Args)]
+#[command(after_help = "\
+Files in DIR, named after the deck: JOB.json (outcome, work, findings, times), JOB_history.csv (one row per increment),
+JOB_contact.csv, JOB_nodes.csv (by the output requests of the deck), JOB.pvd with its .vtu (ParaView), JOB.dat (printed tables).
+Ctrl-C stops after the present increment and keeps what there is; a second one stops at once.")]
 pub struct RunArgs {
     /// The deck; results are named after it.
     deck: PathBuf,
@@ -26,7 +42,7 @@ pub struct RunArgs {
     /// Threads; the results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
-    /// Names and units of ports [default: ports.toml beside the deck is NOT read unless given].
+    /// Names and units of ports [default: ports.toml beside the deck, if there is one].
     #[arg(long, value_name = "FILE")]
     ports: Option<PathBuf>,
     /// Nothing on the terminal but findings.
@@ -36,6 +52,175 @@ pub struct RunArgs {
 
 /// Runs the verb.
 pub fn run(arguments: RunArgs) -> Exit {
-    let _ = arguments;
-    todo!()
+    match Job::read(arguments).and_then(Job::solve) {
+        Ok(exit) | Err(exit) => exit,
+    }
+}
+
+/// A deck that is ready to be solved.
+struct Job {
+    name: String,
+    deck: PathBuf,
+    directory: PathBuf,
+    dialect: Dialect,
+    prepared: Arc<PreparedModel>,
+    settings: Vec<settings::Setting>,
+    diagnostics: Vec<Diagnostic>,
+    clock: Clock,
+    progress: Progress,
+    stop: Arc<AtomicBool>,
+}
+
+impl Job {
+    /// Everything that can be wrong with the input is found here.
+    fn read(arguments: RunArgs) -> Result<Self, Exit> {
+        let RunArgs { deck, out, sets, dialect, path, threads, ports, quiet } = arguments;
+        let stop = interrupt::watch()?;
+        let mut clock = Clock::start(Stage::Read);
+        let progress = Progress::new(quiet);
+        progress.stage(Stage::Read);
+        let dialect = dialect.into();
+        let assignments = settings::parse(&sets);
+        let ports_toml = read_ports(ports.as_deref(), &deck);
+        let opened = open_deck(&deck, dialect)?;
+        let options = PrepareOptions { path: path.into(), threads, ports_toml: ports_toml? };
+        let mut diagnostics = opened.diagnostics;
+        let prepared = PreparedModel::prepare(opened.model, &options, &mut |phase| {
+            let stage = Stage::Phase(phase);
+            clock.enter(stage);
+            progress.stage(stage);
+        });
+        let prepared = progress.hidden_while(|| match prepared {
+            Ok(prepared) => Ok(Arc::new(prepared)),
+            Err(findings) => {
+                report(&findings);
+                complain(&super::open::count(&deck, &findings));
+                Err(Exit::InputWrong)
+            }
+        })?;
+        progress.hidden_while(|| report(prepared.warnings()));
+        diagnostics.extend_from_slice(prepared.warnings());
+        let settings = progress.hidden_while(|| settings::resolve(assignments, &prepared.ports().inputs))?;
+        let name = match deck.file_stem() {
+            Some(stem) => stem.to_string_lossy().into_owned(),
+            None => String::from("job"),
+        };
+        let directory = out.unwrap_or_else(|| deck.parent().map(Path::to_owned).unwrap_or_default());
+        let directory = if directory.as_os_str().is_empty() { PathBuf::from(".") } else { directory };
+        Ok(Self { name, deck, directory, dialect, prepared, settings, diagnostics, clock, progress, stop })
+    }
+
+    /// Runs every step and writes the results.
+    fn solve(mut self) -> Result<Exit, Exit> {
+        let writer = self.create_files().map_err(|error| failed(&error))?;
+        let mut simulation = Simulation::new(Arc::clone(&self.prepared));
+        for setting in &self.settings {
+            // The names were found among the inputs and the values are finite.
+            if let Err(error) = simulation.set_magnitude(setting.input, setting.value) {
+                complain(&format!("error: --set {}: {error}", setting.name));
+                return Err(Exit::OurFailure);
+            }
+        }
+        self.clock.enter(Stage::SOLVE);
+        interrupt::solving();
+        let end = simulation.time_end();
+        let mut monitor = Monitor::new(writer, &self.progress, &mut self.clock, &self.stop, end);
+        let outcome = match simulation.advance(end, &mut monitor) {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                complain(&format!("error: the end of the last step cannot be taken as a target: {error}"));
+                return Err(Exit::OurFailure);
+            }
+        };
+        let (writer, audit) = monitor.finish(&simulation);
+        self.clock.enter(Stage::WRITE);
+        self.progress.stage(Stage::WRITE);
+        let written = writer.finish(&simulation);
+        self.progress.clear();
+        let ended = Ended::new(&outcome, written.is_err(), simulation.time());
+        let report = self.report(&simulation, &ended, audit);
+        let written = written.and_then(|()| write_report(&self.directory, &self.name, &report));
+        ended.tell(&report, self.progress.quiet());
+        match written {
+            Ok(()) => Ok(ended.exit),
+            Err(error) => Err(failed(&error)),
+        }
+    }
+
+    fn create_files(&self) -> Result<ResultWriter, OutputError> {
+        std::fs::create_dir_all(&self.directory)
+            .map_err(|source| OutputError { path: self.directory.clone(), source })?;
+        ResultWriter::create(&self.directory, &self.name, Arc::clone(&self.prepared))
+    }
+
+    fn report(&self, simulation: &Simulation, ended: &Ended, audit: Vec<String>) -> RunReport {
+        let mesh = &self.prepared.model().mesh;
+        RunReport {
+            job: self.name.clone(),
+            deck: self.deck.display().to_string(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            dialect: self.dialect,
+            outcome: ended.outcome,
+            reason: ended.reason.clone(),
+            time_reached: simulation.time(),
+            size: ModelSize {
+                nodes: mesh.nodes.len(),
+                elements: mesh.elements.len(),
+                contact_points: self.prepared.contact_points().len(),
+            },
+            inputs_set: self.inputs_set(self.prepared.ports()),
+            steps: simulation.step_reports().into_iter().map(Into::into).collect(),
+            diagnostics: self.diagnostics.iter().map(Finding::from).collect(),
+            audit,
+            wall_seconds: self.clock.seconds(),
+        }
+    }
+
+    fn inputs_set(&self, ports: &PortList) -> BTreeMap<String, f64> {
+        self.settings.iter().map(|s| (ports.inputs[s.input].name.clone(), s.value)).collect()
+    }
+}
+
+fn failed(error: &OutputError) -> Exit {
+    complain(&format!("error: {error}"));
+    Exit::OurFailure
+}
+
+/// How the run ended.
+struct Ended {
+    outcome: RunOutcome,
+    reason: Option<String>,
+    exit: Exit,
+}
+
+impl Ended {
+    fn new(outcome: &AdvanceOutcome, unwritable: bool, time: f64) -> Self {
+        match outcome {
+            AdvanceOutcome::Reached => Self { outcome: RunOutcome::Completed, reason: None, exit: Exit::Done },
+            AdvanceOutcome::Cancelled => {
+                let why = if unwritable { "the results could not be written" } else { "told to stop" };
+                let reason = format!("{why}; the results end at total time {time}");
+                Self { outcome: RunOutcome::Stopped, reason: Some(reason), exit: Exit::NotConverged }
+            }
+            AdvanceOutcome::Stopped { reason } => {
+                Self { outcome: RunOutcome::Stopped, reason: Some(reason.clone()), exit: Exit::NotConverged }
+            }
+        }
+    }
+
+    /// Findings and a stop on stderr always; the rest unless it is unwanted.
+    fn tell(&self, report: &RunReport, quiet: bool) {
+        for finding in &report.audit {
+            complain(&format!("audit: {finding}"));
+        }
+        if let Some(reason) = &self.reason {
+            complain(&format!("stopped at total time {}: {reason}", report.time_reached));
+        }
+        if !quiet {
+            let total: f64 = report.wall_seconds.values().sum();
+            let phases: Vec<String> =
+                report.wall_seconds.iter().map(|(phase, seconds)| format!("{phase} {seconds:.3}")).collect();
+            complain(&format!("{}: {:.3} s ({})", report.job, total, phases.join(", ")));
+        }
+    }
 }
