@@ -50,7 +50,13 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// A finding that stops the deck.
     pub fn error(place: Place, keyword: &str, message: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, place, keyword: keyword.into(), message: message.into(), remedy: remedy.into() }
+        Self {
+            severity: Severity::Error,
+            place,
+            keyword: keyword.into(),
+            message: message.into(),
+            remedy: remedy.into(),
+        }
     }
 
     /// A finding that leaves the answer standing.

@@ -12,6 +12,17 @@ pub mod output;
 pub mod port;
 pub mod simulation;
 
+mod audit;
+mod fields;
+mod fingerprint;
+mod observe;
+mod outputs;
+mod port_config;
+mod prepared;
+mod request;
+mod results;
+mod state;
+
 mod contact;
 mod element;
 mod procedure;

@@ -1,1 +1,3 @@
-//! Contact geometry: search, projection, constraint rows.
+//! Contact geometry: search, projection, tributary areas.
+
+pub mod points;

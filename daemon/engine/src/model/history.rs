@@ -1,6 +1,6 @@
 //! Steps: procedures, loads, prescribed displacements and output requests.
 
-use super::{AmplitudeId, ElementId, ElementFace, NodeId, SetId};
+use super::{AmplitudeId, ElementFace, ElementId, NodeId, SetId, SurfaceId};
 use crate::diagnostic::Place;
 
 /// `*STEP` … `*END STEP`.
@@ -57,13 +57,15 @@ pub struct StaticControl {
     pub direct: bool,
 }
 
-/// Reference to a set by its name, or to one node or element by its number.
+/// Reference to a set or surface by its name, or to one node or element by its number.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Region {
     /// A set.
     Set(SetId),
     /// A single node label or element label.
     Label(u32),
+    /// A surface (`*DSLOAD`).
+    Surface(SurfaceId),
 }
 
 /// One degree of freedom range of one `*BOUNDARY` data line, already split: one direction each.

@@ -1,1 +1,4 @@
-//! Procedures.
+//! Procedures: how time advances through the steps of a deck.
+
+pub mod loading;
+pub mod statics;

@@ -1,0 +1,72 @@
+//! The audit of a solution: what a careful analyst would check before believing it.
+
+use crate::simulation::Simulation;
+
+/// Unbalanced force, relative to the forces at work, that rounding explains.
+const BALANCE_TOLERANCE: f64 = 1e-8;
+/// Overclosure of a closed hard point, relative to the largest overclosure that contact prevents.
+const HARD_TOLERANCE: f64 = 1e-8;
+/// Overclosure, relative to the face, beyond which a softened law is outside small sliding (HCRIT: half a face).
+const OVERCLOSURE_MAX: f64 = 0.5;
+
+impl Simulation {
+    /// What the audit of the present solution found; empty when clean.
+    pub fn audit(&self) -> Vec<String> {
+        let mut findings = Vec::new();
+        self.audit_balance(&mut findings);
+        self.audit_points(&mut findings);
+        findings
+    }
+
+    /// Reactions and loads add up to zero in each direction.
+    fn audit_balance(&self, findings: &mut Vec<String>) {
+        let prepared = &self.prepared;
+        for d in 0..3 {
+            let reaction = self.generalised(prepared.outputs.all_reactions[d]);
+            let (mut load, mut scale) = (0.0, reaction.abs());
+            for (total, a) in prepared.load_totals.iter().zip(&self.state.coefficients) {
+                load += total[d] * a;
+                scale += (total[d] * a).abs();
+            }
+            scale += self.state.forces.iter().sum::<f64>();
+            if (reaction + load).abs() > BALANCE_TOLERANCE * scale {
+                findings.push(format!(
+                    "force balance in direction {}: reactions {reaction:e} and loads {load:e} differ by {:e}",
+                    d + 1,
+                    reaction + load
+                ));
+            }
+        }
+    }
+
+    /// No tension, no overclosure of hard points, no overclosure that small sliding does not cover.
+    fn audit_points(&self, findings: &mut Vec<String>) {
+        let prepared = &self.prepared;
+        let scale = self.work.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
+        let force_scale = self.state.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        let (mut tension, mut overlap, mut deep) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, point) in prepared.points.iter().enumerate() {
+            let (force, overclosure) = (self.state.forces[i], self.derived.overclosures[i]);
+            let label = prepared.model.mesh.node_labels[point.node.index()];
+            if force < -1e-10 * force_scale {
+                tension.push(label);
+            }
+            if prepared.contact.is_hard(i) && self.state.step_time > 0.0 && overclosure > HARD_TOLERANCE * scale {
+                overlap.push(label);
+            }
+            if overclosure > OVERCLOSURE_MAX * point.face_size {
+                deep.push(label);
+            }
+        }
+        let mut report = |what: &str, labels: Vec<u32>| {
+            if !labels.is_empty() {
+                let shown: Vec<String> = labels.iter().take(8).map(u32::to_string).collect();
+                let more = if labels.len() > 8 { ", …" } else { "" };
+                findings.push(format!("{what} at {} contact points: node {}{more}", labels.len(), shown.join(", ")));
+            }
+        };
+        report("tension where the law allows none", tension);
+        report("overclosure of hard contact", overlap);
+        report("overclosure of more than half a primary face, which small sliding does not cover", deep);
+    }
+}

@@ -1,0 +1,144 @@
+//! Fields: displacements, reactions and stresses of the whole mesh, recovered by one solve.
+
+use crate::element::brick;
+use crate::simulation::{ContactStatus, Field, FieldError, NodalSolution, Simulation};
+use crate::solve::assembly::corners;
+use crate::solve::columns::Column;
+use crate::solve::numbering::NOT_FREE;
+use crate::solve::supports;
+
+/// Stress (11, 22, 33, 12, 13, 23) at the eight integration points of an element [pressure].
+pub type ElementStress = [[f64; 6]; 8];
+
+/// Fields that [`Simulation::field`] knows.
+const FIELDS: &str = "U, RF, S, CPRESS, COPEN, CSTATUS, CSLIP";
+
+impl Simulation {
+    /// Displacements and reactions of all nodes: one backward solve per body.
+    pub fn recover(&self) -> NodalSolution {
+        let prepared = &self.prepared;
+        let (coefficients, forces) = (&self.state.coefficients, &self.state.forces);
+        let mut displacement = vec![[0.0; 3]; prepared.model.mesh.nodes.len()];
+        for (column, &a) in prepared.loading.columns.iter().zip(coefficients) {
+            if let Column::Displacement(entries) = column {
+                for &(node, direction, value) in entries {
+                    displacement[node.index()][direction as usize] += a * value;
+                }
+            }
+        }
+        for body in &prepared.bodies {
+            let unknowns = body.recover(coefficients, forces);
+            for (node, directions) in body.nodes.iter().zip(&body.unknowns) {
+                for (u, &unknown) in displacement[node.index()].iter_mut().zip(directions) {
+                    if unknown != NOT_FREE {
+                        *u = unknowns[unknown as usize];
+                    }
+                }
+            }
+        }
+        let reaction = self.reactions(&displacement);
+        NodalSolution { displacement, reaction }
+    }
+
+    /// `RF = K u − f + Bᵀ F` on the prescribed directions.
+    fn reactions(&self, displacement: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let prepared = &self.prepared;
+        let supports = &prepared.supports;
+        let mut reaction = vec![[0.0; 3]; displacement.len()];
+        supports::internal_forces(
+            &prepared.model,
+            &prepared.elasticities,
+            &prepared.support_elements,
+            displacement,
+            |node, direction, force| {
+                if supports.is_prescribed(node, direction) {
+                    reaction[node.index()][direction] += force;
+                }
+            },
+        );
+        for (column, &a) in prepared.loading.columns.iter().zip(&self.state.coefficients) {
+            if let Column::Force(entries) = column {
+                for &(node, direction, value) in entries {
+                    if supports.is_prescribed(node, direction as usize) {
+                        reaction[node.index()][direction as usize] -= a * value;
+                    }
+                }
+            }
+        }
+        for (point, &force) in prepared.points.iter().zip(&self.state.forces).filter(|(_, f)| **f != 0.0) {
+            point.row(point.normal.map(|x| -x), |node, direction, value| {
+                if supports.is_prescribed(node, direction) {
+                    reaction[node.index()][direction] += value * force;
+                }
+            });
+        }
+        reaction
+    }
+
+    /// Stress at the integration points of one element.
+    pub fn element_stress(&self, solution: &NodalSolution, element: crate::model::ElementId) -> ElementStress {
+        let mesh = &self.prepared.model.mesh;
+        let nodes = mesh.elements[element.index()].nodes;
+        brick::stress(
+            mesh.elements[element.index()].kind,
+            &corners(mesh, element.0),
+            self.prepared.elasticities[mesh.element_materials[element.index()].index()],
+            &nodes.map(|n| solution.displacement[n.index()]),
+        )
+    }
+
+    /// Stress at the nodes (11, 22, 33, 12, 13, 23): extrapolated from the integration points and averaged over
+    /// the elements at each node; zero at nodes without elements.
+    pub fn nodal_stress(&self, solution: &NodalSolution) -> Vec<[f64; 6]> {
+        let mesh = &self.prepared.model.mesh;
+        let mut sum = vec![[0.0; 6]; mesh.nodes.len()];
+        let mut count = vec![0u32; mesh.nodes.len()];
+        for (e, element) in mesh.elements.iter().enumerate() {
+            let stress = self.element_stress(solution, crate::model::ElementId(e as u32));
+            for (node, s) in element.nodes.into_iter().zip(brick::extrapolate(&stress)) {
+                count[node.index()] += 1;
+                for (total, value) in sum[node.index()].iter_mut().zip(s) {
+                    *total += value;
+                }
+            }
+        }
+        for (s, n) in sum.iter_mut().zip(count) {
+            if n > 0 {
+                for value in s {
+                    *value /= f64::from(n);
+                }
+            }
+        }
+        sum
+    }
+
+    /// A field by name.
+    pub fn field(&self, name: &str) -> Result<Field, FieldError> {
+        let mesh = &self.prepared.model.mesh;
+        let nodal = |components: usize, values: Vec<f64>| Field {
+            name: name.into(),
+            labels: mesh.node_labels.clone(),
+            components,
+            values,
+        };
+        let contact = |components: usize, values: Vec<f64>| Field {
+            name: name.into(),
+            labels: self.prepared.points.iter().map(|p| mesh.node_labels[p.node.index()]).collect(),
+            components,
+            values,
+        };
+        let points = &self.derived.points;
+        match name {
+            "U" => Ok(nodal(3, self.recover().displacement.into_flattened())),
+            "RF" => Ok(nodal(3, self.recover().reaction.into_flattened())),
+            "S" => Ok(nodal(6, self.nodal_stress(&self.recover()).into_flattened())),
+            "CPRESS" => Ok(contact(1, points.iter().map(|p| p.pressure).collect())),
+            "COPEN" => Ok(contact(1, points.iter().map(|p| p.clearance).collect())),
+            "CSTATUS" => {
+                Ok(contact(1, points.iter().map(|p| f64::from(u8::from(p.status == ContactStatus::Closed))).collect()))
+            }
+            "CSLIP" => Ok(contact(2, points.iter().flat_map(|p| p.slip).collect())),
+            _ => Err(FieldError { name: name.into(), available: FIELDS.into() }),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Fingerprint of a model: what ties a checkpoint to its deck.
+
+use std::fmt::Write;
+
+use crate::model::Model;
+
+/// FNV-1a, 64 bits.
+struct Fnv(u64);
+
+impl Fnv {
+    fn bytes(&mut self, bytes: &[u8]) {
+        for &b in bytes {
+            self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl Write for Fnv {
+    fn write_str(&mut self, s: &str) -> std::fmt::Result {
+        self.bytes(s.as_bytes());
+        Ok(())
+    }
+}
+
+/// Depends on everything that the solution depends on, and on the sets and requests that shape ports and outputs;
+/// not on heading, file names or line numbers.
+pub fn fingerprint(model: &Model) -> u64 {
+    let mut hash = Fnv(0xcbf2_9ce4_8422_2325);
+    let mesh = &model.mesh;
+    for x in mesh.nodes.iter().flatten() {
+        hash.bytes(&x.to_bits().to_le_bytes());
+    }
+    for label in mesh.node_labels.iter().chain(&mesh.element_labels) {
+        hash.bytes(&label.to_le_bytes());
+    }
+    for element in &mesh.elements {
+        hash.bytes(&[element.kind as u8]);
+        for n in element.nodes {
+            hash.bytes(&n.0.to_le_bytes());
+        }
+    }
+    for material in &mesh.element_materials {
+        hash.bytes(&material.0.to_le_bytes());
+    }
+    let mut text = |part: std::fmt::Arguments<'_>| hash.write_fmt(part).expect("hashing never fails");
+    text(format_args!("{:?}{:?}{:?}", mesh.node_sets, mesh.element_sets, mesh.surfaces));
+    text(format_args!("{:?}{:?}{:?}", model.materials, model.interactions, model.amplitudes));
+    for pair in &model.pairs {
+        text(format_args!("{:?}{:?}{:?}{:?}", pair.name, pair.secondary, pair.primary, pair.interaction));
+    }
+    let mut boundary = |b: &crate::model::Boundary| {
+        text(format_args!("{:?}{:?}{}{}{:?}", b.region_name, b.nodes, b.direction, b.magnitude.to_bits(), b.amplitude))
+    };
+    model.initial_boundaries.iter().for_each(&mut boundary);
+    for step in &model.steps {
+        step.boundaries.iter().for_each(&mut boundary);
+    }
+    for step in &model.steps {
+        text(format_args!("{}{:?}{:?}", step.increments_max, step.procedure, step.loads_removed));
+        for l in &step.loads {
+            text(format_args!("{:?}{:?}{}{:?}", l.region_name, l.kind, l.magnitude.to_bits(), l.amplitude));
+        }
+        text(format_args!("{:?}", step.output));
+    }
+    hash.0
+}

@@ -1,0 +1,115 @@
+//! Results of the present state: contact points, pair totals, energies, output ports, history.
+
+use crate::outputs::Source;
+use crate::simulation::{ContactPointResult, ContactStatus, Energies, HistoryRow, PairTotals, Simulation, WorkCounts};
+
+impl Simulation {
+    /// Computes overclosures and results from the state alone, as after a restore.
+    pub(crate) fn recompute(&mut self) {
+        let prepared = self.prepared.clone();
+        prepared.condensed.free_overclosures(&self.state.coefficients, &mut self.work.free);
+        prepared.contact.overclosures(&self.work.free, &self.state.forces, &mut self.work.overclosures);
+        self.refresh();
+    }
+
+    /// Brings the derived results up to the state; the work space holds the state's overclosures.
+    pub(crate) fn refresh(&mut self) {
+        let prepared = self.prepared.clone();
+        let n = prepared.points.len();
+        let (state, derived) = (&self.state, &mut self.derived);
+        derived.overclosures.clone_from(&self.work.overclosures);
+        derived.points.clear();
+        derived.pairs.clear();
+        derived.pairs.resize(prepared.model.pairs.len(), PairTotals::default());
+        for (i, point) in prepared.points.iter().enumerate() {
+            let closed = state.closed[i];
+            let hard = prepared.contact.is_hard(i);
+            derived.points.push(ContactPointResult {
+                status: if closed { ContactStatus::Closed } else { ContactStatus::Open },
+                // A closed hard point is held at zero by its multiplier; what remains is rounding.
+                clearance: if closed && hard { 0.0 } else { -derived.overclosures[i] },
+                pressure: state.forces[i] / point.area,
+                shear: [0.0; 2],
+                slip: [state.slip[i], state.slip[n + i]],
+            });
+            let pair = &mut derived.pairs[point.pair as usize];
+            for (sum, direction) in pair.force.iter_mut().zip(point.normal) {
+                *sum += state.forces[i] * direction;
+            }
+            if closed {
+                pair.area += point.area;
+            }
+        }
+        for pair in &mut derived.pairs {
+            pair.force_magnitude = pair.force.iter().map(|f| f * f).sum::<f64>().sqrt();
+        }
+        let scratch = &mut self.work.scratch[..n];
+        let strain =
+            prepared.condensed.strain_energy(&prepared.contact.compliance, &state.coefficients, &state.forces, scratch);
+        let contact = prepared.contact.energy(&derived.overclosures);
+        derived.energies = Energies {
+            strain,
+            contact,
+            external_work: state.external_work,
+            total: strain + contact - state.external_work,
+            ..Energies::default()
+        };
+    }
+
+    /// Output values in port order.
+    ///
+    /// # Panics
+    /// If the length is not the number of outputs.
+    pub fn observe(&self, outputs: &mut [f64]) {
+        assert_eq!(outputs.len(), self.prepared.sources.len(), "one value per output port");
+        for (out, &source) in outputs.iter_mut().zip(&self.prepared.sources) {
+            *out = self.value(source);
+        }
+    }
+
+    fn value(&self, source: Source) -> f64 {
+        let pairs = &self.derived.pairs;
+        let points = |pair: usize| {
+            let here = move |(info, _): &(&crate::contact::points::ContactPoint, &ContactPointResult)| {
+                info.pair as usize == pair
+            };
+            self.prepared.points.iter().zip(&self.derived.points).filter(here).map(|(_, result)| result)
+        };
+        let closed = |pair| points(pair).filter(|p| p.status == ContactStatus::Closed).count();
+        let count = |pick: fn(&WorkCounts) -> u32| self.state.counts.iter().map(|c| f64::from(pick(c))).sum();
+        match source {
+            Source::PairForce(pair, d) => pairs[pair].force[d],
+            Source::PairForceMagnitude(pair) => pairs[pair].force_magnitude,
+            Source::PairArea(pair) => pairs[pair].area,
+            Source::PairPressureMax(pair) => points(pair).map(|p| p.pressure).fold(0.0, f64::max),
+            // Finite for a pair without points too: the widest clearance there is.
+            Source::PairClearanceMin(pair) => points(pair).map(|p| p.clearance).fold(f64::MAX, f64::min),
+            Source::PairClosed(pair) => closed(pair) as f64,
+            Source::PairOpen(pair) => (points(pair).count() - closed(pair)) as f64,
+            Source::Generalised(column) => self.generalised(column),
+            Source::Energy(index) => {
+                let e = &self.derived.energies;
+                [e.strain, e.kinetic, e.external_work, e.friction, e.viscous, e.contact, e.impact_loss, e.total][index]
+            }
+            Source::Increments => count(|c| c.increments),
+            Source::EquilibriumIterations => count(|c| c.equilibrium_iterations),
+            Source::SevereDiscontinuityIterations => count(|c| c.severe_discontinuity_iterations),
+            Source::Cutbacks => count(|c| c.cutbacks),
+            Source::LastStatusChange => self.state.last_change,
+        }
+    }
+
+    /// Generalised value of a column under the present state; 0 where there is none.
+    pub(crate) fn generalised(&self, column: Option<usize>) -> f64 {
+        column.map_or(0.0, |c| self.prepared.condensed.conjugate(c, &self.state.coefficients, &self.state.forces))
+    }
+
+    /// The history row of the present time.
+    pub fn history(&self) -> HistoryRow {
+        HistoryRow {
+            pairs: self.derived.pairs.clone(),
+            energies: self.derived.energies,
+            reactions: self.prepared.outputs.set_reactions.iter().map(|r| r.map(|c| self.generalised(c))).collect(),
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Output ports: which condensed results a deck offers, and where each comes from.
+
+use crate::model::{Model, NodeId, SetId};
+use crate::port::{Port, Quantity};
+use crate::solve::columns::{Column, merge};
+use crate::solve::supports::Supports;
+
+/// Where the value of an output comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// Component of the contact force of a pair.
+    PairForce(usize, usize),
+    /// CFNM of a pair.
+    PairForceMagnitude(usize),
+    /// CAREA of a pair.
+    PairArea(usize),
+    /// Largest pressure of a pair.
+    PairPressureMax(usize),
+    /// Smallest clearance of a pair.
+    PairClearanceMin(usize),
+    /// Closed points of a pair.
+    PairClosed(usize),
+    /// Open points of a pair.
+    PairOpen(usize),
+    /// Generalised value of a column; none where no direction of the set takes part.
+    Generalised(Option<usize>),
+    /// One of the energies, in the order of [`ENERGY_NAMES`].
+    Energy(usize),
+    /// Increments so far, all steps.
+    Increments,
+    /// Equilibrium iterations so far, all steps.
+    EquilibriumIterations,
+    /// Severe discontinuity iterations so far, all steps.
+    SevereDiscontinuityIterations,
+    /// Cutbacks so far, all steps.
+    Cutbacks,
+    /// Total time of the last status change.
+    LastStatusChange,
+}
+
+/// Names of the energies, in the order of the history.
+pub const ENERGY_NAMES: [&str; 8] = ["ALLSE", "ALLKE", "ALLWK", "ALLFD", "ALLVD", "ALLCCE", "IMPACT_LOSS", "ETOTAL"];
+
+/// Columns that only outputs and the audit need, behind the real ones.
+pub struct Outputs {
+    /// Ports.
+    pub ports: Vec<Port>,
+    /// Source of each port.
+    pub sources: Vec<Source>,
+    /// Node sets with reaction totals, in the order of the history.
+    pub sets: Vec<SetId>,
+    /// Column of the reaction total of each set and direction.
+    pub set_reactions: Vec<[Option<usize>; 3]>,
+    /// Column of the reaction total of all supports, per direction: the audit.
+    pub all_reactions: [Option<usize>; 3],
+}
+
+/// Node sets that any step asks output for, in order of definition.
+fn requested_sets(model: &Model) -> Vec<SetId> {
+    let mut sets: Vec<SetId> = model.steps.iter().flat_map(|s| &s.output.nodes).filter_map(|r| r.set).collect();
+    sets.sort();
+    sets.dedup();
+    sets
+}
+
+impl Outputs {
+    /// Lists the outputs of a model and appends the columns that they need.
+    pub fn new(model: &Model, supports: &Supports, columns: &mut Vec<Column>) -> Self {
+        let mut out = Self {
+            ports: Vec::new(),
+            sources: Vec::new(),
+            sets: requested_sets(model),
+            set_reactions: Vec::new(),
+            all_reactions: [None; 3],
+        };
+        for (index, pair) in model.pairs.iter().enumerate() {
+            out.pair(index, &pair.name);
+        }
+        let reaction = |nodes: &[NodeId], d: usize, columns: &mut Vec<Column>| {
+            let entries: Vec<_> =
+                nodes.iter().filter(|&&n| supports.is_prescribed(n, d)).map(|&n| (n, d as u8, 1.0)).collect();
+            (!entries.is_empty()).then(|| {
+                columns.push(Column::Displacement(merge(entries)));
+                columns.len() - 1
+            })
+        };
+        for &set in &out.sets.clone() {
+            let set = &model.mesh.node_sets[set.index()];
+            let share = 1.0 / set.nodes.len() as f64;
+            for d in 0..3 {
+                let column = (!set.nodes.is_empty()).then(|| {
+                    columns.push(Column::Force(merge(set.nodes.iter().map(|&n| (n, d as u8, share)).collect())));
+                    columns.len() - 1
+                });
+                let what = format!("Mean displacement {} of {}", d + 1, set.name);
+                out.add(format!("node.{}.U{}", set.name, d + 1), Quantity::Length, what, Source::Generalised(column));
+            }
+            let mut reactions = [None; 3];
+            for (d, slot) in reactions.iter_mut().enumerate() {
+                *slot = reaction(&set.nodes, d, columns);
+                let what = format!("Total reaction force {} on {}", d + 1, set.name);
+                out.add(format!("node.{}.RF{}", set.name, d + 1), Quantity::Force, what, Source::Generalised(*slot));
+            }
+            out.set_reactions.push(reactions);
+        }
+        let all: Vec<NodeId> =
+            (0..model.mesh.nodes.len() as u32).map(NodeId).filter(|&n| supports.touches(n)).collect();
+        out.all_reactions = std::array::from_fn(|d| reaction(&all, d, columns));
+        for (index, name) in ENERGY_NAMES.iter().enumerate() {
+            out.add(
+                format!("energy.{name}"),
+                Quantity::Energy,
+                format!("{name} of the whole model"),
+                Source::Energy(index),
+            );
+        }
+        let counts = [
+            ("increments", Source::Increments, "Increments completed"),
+            ("equilibrium_iterations", Source::EquilibriumIterations, "Iterations that changed no contact status"),
+            (
+                "severe_discontinuity_iterations",
+                Source::SevereDiscontinuityIterations,
+                "Iterations that changed a contact status",
+            ),
+            ("cutbacks", Source::Cutbacks, "Increments tried again with a smaller size"),
+        ];
+        for (name, source, what) in counts {
+            out.add(format!("work.{name}"), Quantity::Count, what.into(), source);
+        }
+        out.add(
+            "contact.last_status_change".into(),
+            Quantity::Time,
+            "Total time of the last status change".into(),
+            Source::LastStatusChange,
+        );
+        out
+    }
+
+    fn pair(&mut self, index: usize, name: &str) {
+        for d in 0..3 {
+            let what = format!("Contact force {} on the secondary surface", d + 1);
+            self.add(format!("contact.{name}.CFN{}", d + 1), Quantity::Force, what, Source::PairForce(index, d));
+        }
+        let rest = [
+            ("CFNM", Quantity::Force, "Magnitude of the contact force", Source::PairForceMagnitude(index)),
+            ("CAREA", Quantity::Area, "Area of the closed points", Source::PairArea(index)),
+            ("CPRESS_max", Quantity::Pressure, "Largest contact pressure", Source::PairPressureMax(index)),
+            (
+                "COPEN_min",
+                Quantity::Length,
+                "Smallest clearance, negative when the bodies overlap",
+                Source::PairClearanceMin(index),
+            ),
+            ("closed", Quantity::Count, "Closed contact points", Source::PairClosed(index)),
+            ("open", Quantity::Count, "Open contact points", Source::PairOpen(index)),
+        ];
+        for (suffix, quantity, what, source) in rest {
+            self.add(format!("contact.{name}.{suffix}"), quantity, what.into(), source);
+        }
+    }
+
+    fn add(&mut self, name: String, quantity: Quantity, description: String, source: Source) {
+        self.ports.push(Port { name, quantity, unit: None, description });
+        self.sources.push(source);
+    }
+}

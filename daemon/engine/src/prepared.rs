@@ -1,0 +1,352 @@
+//! Preparation: everything that can be computed before the first increment.
+
+use crate::contact::points::{self, ContactPoint};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::element::brick::Elasticity;
+use crate::fingerprint::fingerprint;
+use crate::model::{Model, NodeId};
+use crate::outputs::{Outputs, Source};
+use crate::port::PortList;
+use crate::port_config::PortConfig;
+use crate::procedure::loading::Loading;
+use crate::simulation::{ContactPointInfo, PathChoice, Phase, PrepareOptions};
+use crate::solve::assembly::elasticities;
+use crate::solve::body::{Body, BodyContribution, Context, NoStiffness};
+use crate::solve::columns::Column;
+use crate::solve::condensed::Condensed;
+use crate::solve::contact::{ContactSystem, PointBehavior};
+use crate::solve::numbering::Bodies;
+use crate::solve::rigid;
+use crate::solve::supports::Supports;
+
+/// Everything that can be computed before the first increment. Immutable; shared by sessions and instances.
+pub struct PreparedModel {
+    pub(crate) model: Model,
+    pub(crate) ports: PortList,
+    pub(crate) points: Vec<ContactPoint>,
+    pub(crate) infos: Vec<ContactPointInfo>,
+    pub(crate) warnings: Vec<Diagnostic>,
+    pub(crate) loading: Loading,
+    pub(crate) supports: Supports,
+    pub(crate) elasticities: Vec<Elasticity>,
+    pub(crate) bodies: Vec<Body>,
+    /// Elements with a prescribed direction: they carry the reactions.
+    pub(crate) support_elements: Vec<u32>,
+    pub(crate) condensed: Condensed,
+    pub(crate) contact: ContactSystem,
+    /// Columns that carry loads; the rest only measure.
+    pub(crate) real_columns: usize,
+    /// Selected output ports' sources.
+    pub(crate) sources: Vec<Source>,
+    pub(crate) outputs: Outputs,
+    /// Total force of unit coefficients, per real column and direction: the audit.
+    pub(crate) load_totals: Vec<[f64; 3]>,
+    pub(crate) fingerprint: u64,
+}
+
+impl PreparedModel {
+    /// Prepares a validated model. Errors are findings about the deck (a body that nothing holds, an inverted element).
+    pub fn prepare(
+        model: Model,
+        options: &PrepareOptions,
+        announce: &mut dyn FnMut(Phase),
+    ) -> Result<Self, Vec<Diagnostic>> {
+        if options.path == PathChoice::Sparse {
+            return Err(vec![Diagnostic::error(
+                Place::nowhere(),
+                "",
+                "the sparse path is not available in this version",
+                "leave --path at auto or dense",
+            )]);
+        }
+        announce(Phase::Search);
+        let supports = Supports::new(&model);
+        let (points, mut warnings) = points::find(&model);
+        let bodies = Bodies::find(&model.mesh);
+        let mut errors = unattached(&model, &bodies, &supports, &points);
+        errors.extend(unheld(&model, &bodies, &supports));
+        let loading = match Loading::new(&model) {
+            Ok(loading) => Some(loading),
+            Err(found) => {
+                errors.extend(found);
+                None
+            }
+        };
+        let Some(loading) = loading.filter(|_| errors.is_empty()) else { return Err(errors) };
+        let mut columns = loading.columns.clone();
+        let real_columns = columns.len();
+        let outputs = Outputs::new(&model, &supports, &mut columns);
+        let elasticities = elasticities(&model);
+        let mut local = vec![u32::MAX; model.mesh.nodes.len()];
+        for nodes in &bodies.nodes {
+            for (i, n) in nodes.iter().enumerate() {
+                local[n.index()] = i as u32;
+            }
+        }
+        let context = Context {
+            model: &model,
+            elasticities: &elasticities,
+            supports: &supports,
+            local: &local,
+            points: &points,
+            columns: &columns,
+        };
+        let results = prepare_bodies(&context, &bodies, options.threads, announce);
+        announce(Phase::Condense);
+        let (mut prepared, mut contributions) = (Vec::new(), Vec::new());
+        for result in results {
+            match result {
+                Ok((body, contribution)) => {
+                    prepared.push(body);
+                    contributions.push(contribution);
+                }
+                Err(NoStiffness { node, direction }) => errors.push(Diagnostic::error(
+                    Place::nowhere(),
+                    "",
+                    format!(
+                        "node {} has no stiffness in direction {}: part of its body can move without resistance",
+                        model.mesh.node_labels[node.index()],
+                        direction + 1
+                    ),
+                    "connect it by whole faces, or hold it by *BOUNDARY",
+                )),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let locate = |n: NodeId| {
+            let body = bodies.of_node[n.index()];
+            (body != u32::MAX).then(|| (body as usize, local[n.index()] as usize))
+        };
+        let (condensed, compliance) = Condensed::new(&points, &columns, &prepared, &contributions, locate);
+        for body in &mut prepared {
+            body.keep_columns(real_columns);
+        }
+        let contact = ContactSystem {
+            compliance,
+            points: points
+                .iter()
+                .map(|p| PointBehavior { area: p.area, behavior: model.pairs[p.pair as usize].interaction.index() })
+                .collect(),
+            behaviors: model.interactions.iter().map(|i| i.normal.clone()).collect(),
+        };
+        let all = PortList { inputs: loading.inputs.clone(), outputs: outputs.ports.clone() };
+        let (ports, sources) = match &options.ports_toml {
+            None => (all, outputs.sources.clone()),
+            Some(text) => PortConfig::parse(text).and_then(|c| c.apply(all, &outputs.sources)).map_err(|messages| {
+                let as_error = |m: String| Diagnostic::error(Place::nowhere(), "ports.toml", m, "");
+                messages.into_iter().map(as_error).collect::<Vec<_>>()
+            })?,
+        };
+        warnings.extend(unreachable_loads(&model, &bodies));
+        let support_elements = (0..model.mesh.elements.len() as u32)
+            .filter(|&e| model.mesh.elements[e as usize].nodes.iter().any(|&n| supports.touches(n)))
+            .collect();
+        let infos = points
+            .iter()
+            .map(|p| ContactPointInfo {
+                pair: p.pair,
+                node: p.node,
+                area: p.area,
+                normal: p.normal,
+                clearance: p.clearance,
+            })
+            .collect();
+        let load_totals = loading.columns.iter().map(total_force).collect();
+        let fingerprint = fingerprint(&model);
+        tracing::debug!(
+            bodies = prepared.len(),
+            unknowns = prepared.iter().map(|b| b.count).sum::<usize>(),
+            factor = prepared.iter().map(Body::factor_size).sum::<usize>(),
+            contact_points = points.len(),
+            "prepared"
+        );
+        Ok(Self {
+            model,
+            ports,
+            points,
+            infos,
+            warnings,
+            loading,
+            supports,
+            elasticities,
+            bodies: prepared,
+            support_elements,
+            condensed,
+            contact,
+            real_columns,
+            sources,
+            outputs,
+            load_totals,
+            fingerprint,
+        })
+    }
+
+    /// The model as the deck describes it.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Findings of the preparation that do not stop it (points without a partner, …).
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Inputs and outputs.
+    pub fn ports(&self) -> &PortList {
+        &self.ports
+    }
+
+    /// Contact points, pairs one after another, in the order of every per-point result.
+    pub fn contact_points(&self) -> &[ContactPointInfo] {
+        &self.infos
+    }
+
+    /// Names of the node sets whose reaction totals stand in each history row.
+    pub fn total_set_names(&self) -> Vec<&str> {
+        self.outputs.sets.iter().map(|s| self.model.mesh.node_sets[s.index()].name.as_str()).collect()
+    }
+
+    /// Identifies the model among others: equal decks have equal fingerprints.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+
+    /// Sparse factorisations that the preparation did.
+    pub(crate) fn factorizations(&self) -> u32 {
+        self.bodies.iter().filter(|b| b.is_factored()).count() as u32
+    }
+}
+
+type BodyResult = Result<(Body, BodyContribution), NoStiffness>;
+
+/// Prepares every body, several at a time if allowed. The results do not depend on how many.
+fn prepare_bodies(
+    context: &Context<'_>,
+    bodies: &Bodies,
+    threads: usize,
+    announce: &mut dyn FnMut(Phase),
+) -> Vec<BodyResult> {
+    let count = bodies.nodes.len();
+    let points_of = |body: usize| -> Vec<u32> {
+        let touches = |p: &ContactPoint| {
+            p.nodes().iter().any(|&n| {
+                bodies.of_node[n.index()] == body as u32 && (0..3).any(|d| !context.supports.is_prescribed(n, d))
+            })
+        };
+        (0..context.points.len() as u32).filter(|&i| touches(&context.points[i as usize])).collect()
+    };
+    if threads <= 1 || count <= 1 {
+        return (0..count)
+            .map(|b| Body::prepare(context, &bodies.nodes[b], &bodies.elements[b], points_of(b), announce))
+            .collect();
+    }
+    announce(Phase::Numeric);
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    let results: Vec<std::sync::Mutex<Option<BodyResult>>> = (0..count).map(|_| std::sync::Mutex::new(None)).collect();
+    std::thread::scope(|scope| {
+        for _ in 0..threads.min(count) {
+            scope.spawn(|| {
+                loop {
+                    let b = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                    if b >= count {
+                        break;
+                    }
+                    let result =
+                        Body::prepare(context, &bodies.nodes[b], &bodies.elements[b], points_of(b), &mut |_| {});
+                    *results[b].lock().expect("no other thread writes this slot") = Some(result);
+                }
+            });
+        }
+    });
+    results
+        .into_iter()
+        .map(|slot| slot.into_inner().expect("a panic has ended the scope before").expect("every body was taken once"))
+        .collect()
+}
+
+/// Total force of a column of coefficient 1.
+fn total_force(column: &Column) -> [f64; 3] {
+    let mut total = [0.0; 3];
+    if let Column::Force(entries) = column {
+        for &(_, direction, value) in entries {
+            total[direction as usize] += value;
+        }
+    }
+    total
+}
+
+/// Bodies that the supports do not hold, by name and motion.
+fn unheld(model: &Model, bodies: &Bodies, supports: &Supports) -> Vec<Diagnostic> {
+    let mut errors = Vec::new();
+    for (nodes, elements) in bodies.nodes.iter().zip(&bodies.elements) {
+        let motions = rigid::free_motions(&model.mesh, nodes, |n, d| supports.is_prescribed(n, d));
+        if !motions.is_empty() {
+            errors.push(Diagnostic::error(
+                Place::nowhere(),
+                "*BOUNDARY",
+                format!(
+                    "body {} is not held by its own supports: {} is free, and contact alone cannot hold a body in this version",
+                    body_name(model, elements),
+                    motions.join(", ")
+                ),
+                "prescribe enough of its directions by *BOUNDARY",
+            ));
+        }
+    }
+    errors
+}
+
+/// The smallest element set that covers the body, else its first element.
+fn body_name(model: &Model, elements: &[u32]) -> String {
+    let first = elements[0];
+    let covers = |set: &&crate::model::ElementSet| {
+        set.elements.len() >= elements.len()
+            && elements.iter().all(|&e| set.elements.binary_search(&crate::model::ElementId(e)).is_ok())
+    };
+    match model.mesh.element_sets.iter().filter(covers).min_by_key(|s| s.elements.len()) {
+        Some(set) => set.name.clone(),
+        None => format!("of element {}", model.mesh.element_labels[first as usize]),
+    }
+}
+
+/// Contact nodes that no element holds and no support fixes.
+fn unattached(model: &Model, bodies: &Bodies, supports: &Supports, points: &[ContactPoint]) -> Vec<Diagnostic> {
+    let mut reported = rustc_hash::FxHashSet::default();
+    let mut errors = Vec::new();
+    for point in points {
+        let n = point.node;
+        let loose = bodies.of_node[n.index()] == u32::MAX && (0..3).any(|d| !supports.is_prescribed(n, d));
+        if loose && reported.insert(n) {
+            errors.push(Diagnostic::error(
+                model.pairs[point.pair as usize].place.clone(),
+                "*CONTACT PAIR",
+                format!(
+                    "secondary node {} belongs to no element and is not fully prescribed",
+                    model.mesh.node_labels[n.index()]
+                ),
+                "attach it to an element or prescribe its directions 1 to 3",
+            ));
+        }
+    }
+    errors
+}
+
+/// Loads on nodes that belong to no element go nowhere.
+fn unreachable_loads(model: &Model, bodies: &Bodies) -> Vec<Diagnostic> {
+    let mut warnings = Vec::new();
+    for load in model.steps.iter().flat_map(|s| &s.loads) {
+        if let crate::model::LoadKind::Concentrated { nodes, .. } = &load.kind
+            && let Some(n) = nodes.iter().find(|n| bodies.of_node[n.index()] == u32::MAX)
+        {
+            warnings.push(Diagnostic::warning(
+                load.place.clone(),
+                "*CLOAD",
+                format!("node {} belongs to no element: its force acts on nothing", model.mesh.node_labels[n.index()]),
+                "load nodes of elements",
+            ));
+        }
+    }
+    warnings
+}

@@ -1,0 +1,355 @@
+//! Static increments: fixed or automatic, cut back when no equilibrium is found.
+
+use crate::model::{Procedure, StaticControl};
+use crate::procedure::loading::value_at;
+use crate::simulation::{AdvanceOutcome, ContactStatus, IncrementReport, Simulation, StatusChange, Watch};
+use crate::solve::contact::{SolveCounts, SolveFailure};
+
+/// Automatic increments: growth after two easy increments in a row (Abaqus: 1.5 after two).
+const GROWTH: f64 = 1.5;
+/// Equilibrium iterations of an easy increment (Abaqus: I_G = 4).
+const EASY_ITERATIONS: u32 = 4;
+/// Automatic increments: what is left of an increment that failed (Abaqus: 0.25).
+const CUTBACK: f64 = 0.25;
+/// Two times closer than this part of the period are the same time: sums of increments round.
+const TIME_TOLERANCE: f64 = 1e-12;
+/// Part of a face that a closed point may slide before small sliding no longer describes it.
+const SLIDING_MAX: f64 = 0.5;
+/// Points named in a message.
+const NAMED_POINTS: usize = 6;
+
+/// Interval over which driven inputs go from their last values to their pending ones.
+struct Interval {
+    start: f64,
+    end: f64,
+    /// Times this close to the end are the end.
+    tolerance: f64,
+    /// Column, value at the start, value at the end.
+    driven: Vec<(usize, f64, f64)>,
+}
+
+impl Simulation {
+    /// Runs the present step to a step time. The step's own end is always the end of an increment.
+    pub(crate) fn advance_step(&mut self, target: f64, watch: &mut dyn Watch) -> AdvanceOutcome {
+        let prepared = self.prepared.clone();
+        let step = self.state.step as usize;
+        let Procedure::Static(control) = prepared.model.steps[step].procedure;
+        let tolerance = TIME_TOLERANCE * control.period.max(target.abs());
+        let interval = self.begin_interval(target, tolerance);
+        let limit = prepared.model.steps[step].increments_max;
+        let mut done = 0;
+        if target <= self.state.step_time + tolerance && self.state.pending.iter().any(Option::is_some) {
+            // New inputs at the same time: they act at once.
+            if let Err(reason) = self.attempt(self.state.step_time, &interval) {
+                return AdvanceOutcome::Stopped { reason: reason.describe(self) };
+            }
+            self.refresh();
+        }
+        while self.state.step_time < target - tolerance {
+            if watch.cancelled() {
+                return AdvanceOutcome::Cancelled;
+            }
+            if done == limit {
+                return AdvanceOutcome::Stopped {
+                    reason: format!("{limit} increments were not enough; raise INC on *STEP"),
+                };
+            }
+            let mut attempt = 1;
+            loop {
+                let (end, clipped) =
+                    next_time(&control, self.state.step_time, self.state.increment_next, target, tolerance);
+                let size = end - self.state.step_time;
+                match self.attempt(end, &interval) {
+                    Ok((counts, changes)) => {
+                        done += 1;
+                        self.complete(&control, size, clipped, attempt, counts);
+                        let report = self.report(size, attempt, counts, changes);
+                        watch.increment(self, &report);
+                        break;
+                    }
+                    Err(failure) => {
+                        let smaller = CUTBACK * size;
+                        if control.direct || smaller < control.increment_min || failure.is_final() {
+                            return AdvanceOutcome::Stopped { reason: failure.describe(self) };
+                        }
+                        attempt += 1;
+                        self.state.counts[step].cutbacks += 1;
+                        self.state.increment_next = smaller;
+                        self.state.easy_increments = 0;
+                    }
+                }
+            }
+        }
+        self.finish_interval(&interval);
+        AdvanceOutcome::Reached
+    }
+
+    fn begin_interval(&mut self, target: f64, tolerance: f64) -> Interval {
+        let mut driven = Vec::new();
+        for (input, &column) in self.prepared.loading.input_columns.iter().enumerate() {
+            if self.on_last_step() && (self.state.driven[input] || self.state.pending[input].is_some()) {
+                let now = self.state.coefficients[column];
+                driven.push((column, now, self.state.pending[input].unwrap_or(now)));
+            }
+        }
+        Interval { start: self.state.step_time, end: target, tolerance, driven }
+    }
+
+    /// The target is reached: pending values have become actual ones.
+    fn finish_interval(&mut self, interval: &Interval) {
+        if interval.driven.is_empty() {
+            return;
+        }
+        for input in 0..self.state.pending.len() {
+            if self.state.pending[input].take().is_some() {
+                self.state.driven[input] = true;
+            }
+        }
+    }
+
+    /// Coefficients of the real columns at a step time.
+    fn coefficients_at(&self, time: f64, interval: &Interval, out: &mut Vec<f64>) {
+        let prepared = &self.prepared;
+        let step = self.state.step as usize;
+        out.clear();
+        for column in 0..prepared.real_columns {
+            let course = self.course(column);
+            out.push(value_at(
+                &prepared.model,
+                course,
+                step,
+                self.state.step_start[column],
+                self.step_start_time(),
+                time,
+            ));
+        }
+        for &(column, from, to) in &interval.driven {
+            out[column] = if time >= interval.end - interval.tolerance {
+                to
+            } else {
+                from + (to - from) * ((time - interval.start) / (interval.end - interval.start))
+            };
+        }
+    }
+
+    /// Tries to find equilibrium at a step time; the state changes only on success.
+    fn attempt(&mut self, time: f64, interval: &Interval) -> Result<(SolveCounts, Vec<StatusChange>), Failure> {
+        let prepared = self.prepared.clone();
+        let mut coefficients = std::mem::take(&mut self.work.coefficients);
+        self.coefficients_at(time, interval, &mut coefficients);
+        let work = &mut self.work;
+        prepared.condensed.free_overclosures(&coefficients, &mut work.free);
+        work.forces.clone_from(&self.state.forces);
+        work.closed.clone_from(&self.state.closed);
+        let solved = self.solver.solve(
+            &prepared.contact,
+            &work.free,
+            &mut work.forces,
+            &mut work.closed,
+            &mut work.overclosures,
+        );
+        let counts = match solved {
+            Ok(counts) => counts,
+            Err(failure) => {
+                self.work.coefficients = coefficients;
+                return Err(Failure::Solve(failure));
+            }
+        };
+        prepared.condensed.tangential(&coefficients, &work.forces, &mut work.scratch, &mut work.tangential);
+        let n = prepared.points.len();
+        let slid: Vec<u32> = (0..n)
+            .filter(|&i| {
+                work.closed[i]
+                    && work.tangential[i].hypot(work.tangential[n + i]) > SLIDING_MAX * prepared.points[i].face_size
+            })
+            .map(|i| i as u32)
+            .collect();
+        if !slid.is_empty() {
+            self.work.coefficients = coefficients;
+            return Err(Failure::Slid(slid));
+        }
+        let changes = self.accept(time, coefficients);
+        Ok((counts, changes))
+    }
+
+    /// Makes the solution in the work space the state.
+    fn accept(&mut self, time: f64, coefficients: Vec<f64>) -> Vec<StatusChange> {
+        let prepared = self.prepared.clone();
+        let n = prepared.points.len();
+        let mut changes = Vec::new();
+        let (state, work) = (&mut self.state, &mut self.work);
+        for i in 0..n {
+            if work.closed[i] != state.closed[i] {
+                let to = if work.closed[i] { ContactStatus::Closed } else { ContactStatus::Open };
+                changes.push(StatusChange { point: i as u32, to });
+            }
+            if work.closed[i] {
+                for at in [i, n + i] {
+                    state.slip[at] += work.tangential[at] - state.tangential[at];
+                }
+            }
+        }
+        // Work by the trapezoidal rule on each force-displacement pair.
+        for column in 0..prepared.real_columns {
+            let conjugate = prepared.condensed.conjugate(column, &coefficients, &work.forces);
+            let (a0, a1, c0) = (state.coefficients[column], coefficients[column], state.conjugates[column]);
+            state.external_work += match prepared.condensed.is_displacement[column] {
+                true => 0.5 * (c0 + conjugate) * (a1 - a0),
+                false => 0.5 * (a0 + a1) * (conjugate - c0),
+            };
+            state.conjugates[column] = conjugate;
+        }
+        std::mem::swap(&mut state.forces, &mut work.forces);
+        std::mem::swap(&mut state.closed, &mut work.closed);
+        std::mem::swap(&mut state.tangential, &mut work.tangential);
+        work.coefficients = std::mem::replace(&mut state.coefficients, coefficients);
+        state.step_time = time;
+        changes
+    }
+
+    fn complete(&mut self, control: &StaticControl, size: f64, clipped: bool, attempt: u32, counts: SolveCounts) {
+        let step = self.state.step as usize;
+        let total = &mut self.state.counts[step];
+        total.increments += 1;
+        total.equilibrium_iterations += counts.equilibrium_iterations;
+        total.severe_discontinuity_iterations += counts.severe_discontinuity_iterations;
+        let easy = attempt == 1 && counts.equilibrium_iterations <= EASY_ITERATIONS;
+        self.state.easy_increments = if easy { self.state.easy_increments + 1 } else { 0 };
+        if !control.direct && !clipped && self.state.easy_increments >= 2 {
+            self.state.increment_next = (GROWTH * size).min(control.increment_max);
+            self.state.easy_increments = 0;
+        }
+    }
+
+    fn report(
+        &mut self,
+        size: f64,
+        attempt: u32,
+        counts: SolveCounts,
+        status_changes: Vec<StatusChange>,
+    ) -> IncrementReport {
+        if !status_changes.is_empty() {
+            self.state.last_change = self.time();
+        }
+        self.refresh();
+        IncrementReport {
+            step: self.state.step + 1,
+            increment: self.state.counts[self.state.step as usize].increments,
+            attempt,
+            severe_discontinuity_iterations: counts.severe_discontinuity_iterations,
+            equilibrium_iterations: counts.equilibrium_iterations,
+            time: self.time(),
+            step_time: self.state.step_time,
+            increment_size: size,
+            status_changes,
+        }
+    }
+}
+
+/// End of the next increment, and whether the end of the step or of the request cut it short.
+///
+/// Fixed increments stand on the grid `k · size` of the step, so that their times have the same bits whoever asks.
+fn next_time(control: &StaticControl, now: f64, increment_next: f64, target: f64, tolerance: f64) -> (f64, bool) {
+    let proposed = if control.direct {
+        let size = control.increment_initial;
+        ((now / size + 1e-9).floor() + 1.0) * size
+    } else {
+        now + increment_next.min(control.increment_max)
+    };
+    let mut end = proposed;
+    if now < control.period - tolerance && end > control.period - tolerance {
+        end = control.period;
+    }
+    if end > target + tolerance {
+        end = target;
+    } else if !control.direct && end > target - tolerance {
+        end = target;
+    }
+    (end, end < proposed - tolerance)
+}
+
+/// Why an attempt failed.
+enum Failure {
+    Solve(SolveFailure),
+    Slid(Vec<u32>),
+}
+
+impl Failure {
+    /// A smaller increment cannot help a point that slides: the deck is beyond the formulation.
+    fn is_final(&self) -> bool {
+        matches!(self, Failure::Slid(_))
+    }
+
+    fn describe(&self, simulation: &Simulation) -> String {
+        let prepared = &simulation.prepared;
+        let name = |&i: &u32| {
+            let point = &prepared.points[i as usize];
+            format!(
+                "{} (pair {})",
+                prepared.model.mesh.node_labels[point.node.index()],
+                prepared.model.pairs[point.pair as usize].name
+            )
+        };
+        let list = |points: &[u32]| {
+            let named: Vec<String> = points.iter().take(NAMED_POINTS).map(name).collect();
+            let more = if points.len() > NAMED_POINTS {
+                format!(" and {} more", points.len() - NAMED_POINTS)
+            } else {
+                String::new()
+            };
+            format!("{}{more}", named.join(", "))
+        };
+        let after = format!("after total time {}", simulation.time());
+        match self {
+            Failure::Slid(points) => format!(
+                "{after}: a secondary node slides beyond half a face of the primary surface, which small sliding does not cover: node {}",
+                list(points)
+            ),
+            Failure::Solve(SolveFailure::NotConverged { points }) => {
+                format!("{after}: no equilibrium found; points that kept changing: node {}", list(points))
+            }
+            Failure::Solve(SolveFailure::Infeasible { points }) => {
+                let only: Vec<u32> = points.iter().map(|p| p.0).collect();
+                let worst = points.iter().map(|p| p.1).fold(0.0, f64::max);
+                format!(
+                    "{after}: prescribed motions push hard surfaces into each other by up to {worst:e} and nothing can give way: node {}",
+                    list(&only)
+                )
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn control(direct: bool) -> StaticControl {
+        StaticControl { increment_initial: 0.05, period: 1.0, increment_min: 1e-5, increment_max: 1.0, direct }
+    }
+
+    #[test]
+    fn fixed_increments_have_the_same_times_whether_asked_one_by_one_or_at_once() {
+        let (mut at_once, mut one_by_one, mut sum) = (0.0, 0.0, 0.0);
+        for k in 1..=20 {
+            at_once = next_time(&control(true), at_once, 0.05, 1.0, 1e-12).0;
+            sum += 0.05;
+            let target: f64 = sum;
+            one_by_one = next_time(&control(true), one_by_one, 0.05, target, 1e-12).0;
+            assert_eq!(at_once.to_bits(), one_by_one.to_bits(), "increment {k}");
+        }
+        assert_eq!(at_once, 1.0);
+    }
+
+    #[test]
+    fn a_request_between_two_grid_times_ends_where_it_asks() {
+        assert_eq!(next_time(&control(true), 0.05, 0.05, 0.07, 1e-12), (0.07, true));
+        assert_eq!(next_time(&control(true), 0.07, 0.05, 1.0, 1e-12), (0.1, false));
+    }
+
+    #[test]
+    fn the_end_of_the_step_is_the_end_of_an_increment() {
+        assert_eq!(next_time(&control(false), 0.9, 0.3, 2.0, 1e-12), (1.0, true));
+        assert_eq!(next_time(&control(false), 1.0, 0.3, 2.0, 1e-12), (1.3, false));
+    }
+}

@@ -1,0 +1,146 @@
+//! Stiffness matrix of one body on its free degrees of freedom, lower triangle by columns, in elimination order.
+
+use super::numbering::NodeGraph;
+use crate::element::brick::{self, Elasticity};
+use crate::model::{Mesh, Model};
+
+/// Symmetric matrix: lower triangle, column by column, rows ascending.
+pub struct LowerMatrix {
+    /// Start of each column; one more than there are columns.
+    pub starts: Vec<usize>,
+    /// Row of each entry.
+    pub rows: Vec<usize>,
+    /// Entries.
+    pub values: Vec<f64>,
+}
+
+impl LowerMatrix {
+    /// Order of the matrix.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Diagonal entries: the first of each column.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
+        self.starts[..self.len()].iter().map(|&s| self.values[s])
+    }
+}
+
+/// Elastic constants of every material.
+pub fn elasticities(model: &Model) -> Vec<Elasticity> {
+    model.materials.iter().map(|m| Elasticity::new(m.youngs_modulus, m.poissons_ratio)).collect()
+}
+
+/// Corner coordinates of an element.
+pub fn corners(mesh: &Mesh, element: u32) -> brick::Corners {
+    mesh.elements[element as usize].nodes.map(|n| mesh.nodes[n.index()])
+}
+
+/// Stiffness of an element of the model.
+pub fn element_stiffness(model: &Model, elasticities: &[Elasticity], element: u32) -> brick::Stiffness {
+    let mesh = &model.mesh;
+    let material = mesh.element_materials[element as usize];
+    brick::stiffness(mesh.elements[element as usize].kind, &corners(mesh, element), elasticities[material.index()])
+}
+
+/// Numbering that assembly needs of a body.
+pub struct Layout<'a> {
+    /// Neighbours by body-local node.
+    pub graph: &'a NodeGraph,
+    /// Body-local nodes in elimination order.
+    pub order: &'a [u32],
+    /// Unknown of each direction of each body-local node, or `NOT_FREE`.
+    pub unknowns: &'a [[u32; 3]],
+    /// Number of unknowns.
+    pub count: usize,
+}
+
+/// Assembles the stiffness of a body.
+pub fn assemble(
+    model: &Model,
+    elasticities: &[Elasticity],
+    elements: &[u32],
+    local: &[u32],
+    layout: &Layout<'_>,
+) -> LowerMatrix {
+    let free = |node: u32| layout.unknowns[node as usize].into_iter().filter(|&u| u != super::numbering::NOT_FREE);
+    let mut position = vec![0u32; layout.order.len()];
+    for (p, &node) in layout.order.iter().enumerate() {
+        position[node as usize] = p as u32;
+    }
+    // Later neighbours of each node by elimination position: each is one block of rows below the node's own.
+    let mut later_starts = vec![0usize];
+    let mut later: Vec<u32> = Vec::with_capacity(layout.graph.neighbours.len() / 2);
+    // First row of each such block within the node's columns, counted from the end of the node's own rows.
+    let mut offsets: Vec<u32> = Vec::with_capacity(later.capacity());
+    let (mut starts, mut rows) = (vec![0usize], Vec::new());
+    let mut own_starts = vec![0usize; layout.order.len()];
+    for (p, &node) in layout.order.iter().enumerate() {
+        let begin = later.len();
+        later.extend(layout.graph.of(node as usize).iter().map(|&j| position[j as usize]).filter(|&q| q > p as u32));
+        later[begin..].sort_unstable();
+        own_starts[p] = starts.len() - 1;
+        let mut below = 0;
+        for &q in &later[begin..] {
+            offsets.push(below);
+            below += free(layout.order[q as usize]).count() as u32;
+        }
+        for column in free(node) {
+            rows.extend(free(node).filter(|&r| r >= column).map(|r| r as usize));
+            for &q in &later[begin..] {
+                rows.extend(free(layout.order[q as usize]).map(|r| r as usize));
+            }
+            starts.push(rows.len());
+        }
+        later_starts.push(later.len());
+    }
+    let mut values = vec![0.0; rows.len()];
+    for &e in elements {
+        let k = element_stiffness(model, elasticities, e);
+        let nodes = model.mesh.elements[e as usize].nodes.map(|n| local[n.index()]);
+        for a in 0..8 {
+            for b in a..8 {
+                let block = &k[brick::block_index(a, b)];
+                let (pa, pb) = (position[nodes[a] as usize], position[nodes[b] as usize]);
+                // The earlier node owns the columns. `transposed`: block rows belong to the earlier node's columns.
+                let (first, second, transposed) = if pa <= pb { (a, b, false) } else { (b, a, true) };
+                let (p, q) = (pa.min(pb) as usize, pa.max(pb));
+                let (columns, row_dofs) =
+                    (layout.unknowns[nodes[first] as usize], layout.unknowns[nodes[second] as usize]);
+                let own = columns.iter().filter(|&&u| u != super::numbering::NOT_FREE).count();
+                let block_row = if q as usize == p {
+                    None
+                } else {
+                    let list = &later[later_starts[p]..later_starts[p + 1]];
+                    let at = list.binary_search(&q).expect("nodes of one element are neighbours");
+                    Some(offsets[later_starts[p] + at] as usize)
+                };
+                let mut column = own_starts[p];
+                let mut column_rank = 0;
+                for (i, &c) in columns.iter().enumerate() {
+                    if c == super::numbering::NOT_FREE {
+                        continue;
+                    }
+                    let base = starts[column];
+                    let mut rank = 0;
+                    for (j, &r) in row_dofs.iter().enumerate() {
+                        if r == super::numbering::NOT_FREE {
+                            continue;
+                        }
+                        let entry = if transposed { block[3 * j + i] } else { block[3 * i + j] };
+                        match block_row {
+                            Some(offset) => values[base + (own - column_rank) + offset + rank] += entry,
+                            None if rank >= column_rank => values[base + rank - column_rank] += entry,
+                            None => {}
+                        }
+                        rank += 1;
+                    }
+                    column += 1;
+                    column_rank += 1;
+                }
+            }
+        }
+    }
+    debug_assert_eq!(starts.len() - 1, layout.count);
+    LowerMatrix { starts, rows, values }
+}

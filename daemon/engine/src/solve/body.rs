@@ -1,0 +1,265 @@
+//! One elastic body: its factored stiffness, condensed onto the contact points that touch it.
+
+use super::assembly::{self, Layout};
+use super::columns::Column;
+use super::linear::{Dense, Factor, Symbolic};
+use super::numbering::{NOT_FREE, NodeGraph};
+use super::ordering;
+use super::supports::Supports;
+use crate::contact::points::ContactPoint;
+use crate::element::brick::Elasticity;
+use crate::model::{Model, NodeId};
+use crate::simulation::Phase;
+
+/// A body, factored. Immutable.
+pub struct Body {
+    /// Nodes, ascending; positions in this list are body-local node numbers.
+    pub nodes: Vec<NodeId>,
+    /// Unknown of each direction of each node, or `NOT_FREE`.
+    pub unknowns: Vec<[u32; 3]>,
+    /// Number of unknowns.
+    pub count: usize,
+    /// Unknowns that no contact point touches; they come first.
+    pub interior: usize,
+    /// Factor; none for a body whose every direction is prescribed.
+    factor: Option<Factor>,
+    /// Contact points with an unknown in this body.
+    pub points: Vec<u32>,
+    /// `Y = L_cc⁻¹ B_cᵀ`: retained unknowns x points of this body.
+    spread: Dense,
+    /// Displacements of the columns on the unknowns.
+    pub columns: Dense,
+}
+
+/// What the rest of the model needs of a body at set-up.
+pub struct BodyContribution {
+    /// `B K⁻¹ Bᵀ`: points x points of this body [length/force].
+    pub compliance: Dense,
+    /// `T K⁻¹ Bᵀ`: (first tangents, then second tangents) x points.
+    pub slip_compliance: Dense,
+    /// Products of the right-hand sides with the solutions: `r_iᵀ u_j` over the unknowns.
+    pub products: Dense,
+    /// `û_iᵀ K û_j` of the displacement columns.
+    pub prescribed_energy: Dense,
+}
+
+/// Why a body could not be prepared: a direction of a node without stiffness.
+#[derive(Debug)]
+pub struct NoStiffness {
+    /// The node.
+    pub node: NodeId,
+    /// Direction, 0..3.
+    pub direction: usize,
+}
+
+/// What is known of the model when bodies are prepared.
+pub struct Context<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// Elastic constants by material.
+    pub elasticities: &'a [Elasticity],
+    /// Prescribed directions.
+    pub supports: &'a Supports,
+    /// Body-local number of each node.
+    pub local: &'a [u32],
+    /// All contact points.
+    pub points: &'a [ContactPoint],
+    /// Load and displacement columns.
+    pub columns: &'a [Column],
+}
+
+impl Body {
+    /// Assembles, orders, factors and condenses a body.
+    pub fn prepare(
+        context: &Context<'_>,
+        nodes: &[NodeId],
+        elements: &[u32],
+        body_points: Vec<u32>,
+        announce: &mut dyn FnMut(Phase),
+    ) -> Result<(Self, BodyContribution), NoStiffness> {
+        announce(Phase::Order);
+        let graph = NodeGraph::new(&context.model.mesh, nodes, elements, context.local);
+        let retained = retained_nodes(context, nodes, &body_points);
+        let order = ordering::order(&graph, &retained);
+        let mut unknowns = vec![[NOT_FREE; 3]; nodes.len()];
+        let (mut count, mut interior) = (0usize, 0usize);
+        for (position, &node) in order.iter().enumerate() {
+            if position == order.len() - retained.len() {
+                interior = count;
+            }
+            for direction in 0..3 {
+                if !context.supports.is_prescribed(nodes[node as usize], direction) {
+                    unknowns[node as usize][direction] = count as u32;
+                    count += 1;
+                }
+            }
+        }
+        if retained.is_empty() {
+            interior = count;
+        }
+        announce(Phase::Assemble);
+        let layout = Layout { graph: &graph, order: &order, unknowns: &unknowns, count };
+        let matrix = assembly::assemble(context.model, context.elasticities, elements, context.local, &layout);
+        let factor = if count == 0 {
+            None
+        } else {
+            announce(Phase::Symbolic);
+            let symbolic = Symbolic::analyse(&matrix);
+            announce(Phase::Numeric);
+            let factor = Factor::new(&matrix, symbolic).map_err(|pivot| {
+                let (node, direction) = unknowns
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(n, us)| us.iter().enumerate().map(move |(d, &u)| (n, d, u)))
+                    .find(|&(_, _, u)| u as usize == pivot.unknown)
+                    .map(|(n, d, _)| (nodes[n], d))
+                    .expect("every unknown is a direction of a node");
+                NoStiffness { node, direction }
+            })?;
+            Some(factor)
+        };
+        drop(matrix);
+        announce(Phase::Condense);
+        let mut body = Self {
+            nodes: nodes.to_vec(),
+            unknowns,
+            count,
+            interior,
+            factor,
+            points: body_points,
+            spread: Dense::default(),
+            columns: Dense::default(),
+        };
+        let contribution = body.condense(context, elements);
+        Ok((body, contribution))
+    }
+
+    fn unknown(&self, context: &Context<'_>, node: NodeId, direction: usize) -> Option<usize> {
+        // A node of another body has a body-local number too: compare the node itself.
+        let local = context.local[node.index()] as usize;
+        (self.nodes.get(local) == Some(&node))
+            .then(|| self.unknowns[local][direction])
+            .filter(|&u| u != NOT_FREE)
+            .map(|u| u as usize)
+    }
+
+    fn condense(&mut self, context: &Context<'_>, elements: &[u32]) -> BodyContribution {
+        let retained = self.count - self.interior;
+        let lower = self.factor.as_ref().map_or_else(Dense::default, |f| f.trailing(self.interior));
+        // Normal rows, dense on the retained unknowns; tangential rows stay sparse.
+        let mut spread = Dense::zeros(retained, self.points.len());
+        for (column, &p) in self.points.iter().enumerate() {
+            let point = &context.points[p as usize];
+            point.row(point.normal.map(|x| -x), |node, direction, value| {
+                if let Some(u) = self.unknown(context, node, direction) {
+                    spread.values[column * retained + u - self.interior] += value;
+                }
+            });
+        }
+        spread.solve_lower(&lower);
+        let compliance = spread.gram();
+        let mut response = spread.clone();
+        response.solve_lower_transposed(&lower);
+        let n = self.points.len();
+        let mut slip_compliance = Dense::zeros(2 * n, n);
+        let mut row: Vec<(usize, f64)> = Vec::new();
+        for (k, &p) in self.points.iter().enumerate() {
+            let point = &context.points[p as usize];
+            for (t, &tangent) in point.tangents.iter().enumerate() {
+                row.clear();
+                point.row(tangent, |node, direction, value| {
+                    row.extend(self.unknown(context, node, direction).map(|u| (u - self.interior, value)));
+                });
+                for j in 0..n {
+                    let column = response.column(j);
+                    slip_compliance.values[j * 2 * n + t * n + k] = row.iter().map(|&(u, v)| v * column[u]).sum();
+                }
+            }
+        }
+        self.spread = spread;
+        let (products, prescribed_energy) = self.solve_columns(context, elements);
+        BodyContribution { compliance, slip_compliance, products, prescribed_energy }
+    }
+
+    /// Solves all columns at once; returns `r_iᵀ u_j` over the unknowns and `û_iᵀ K û_j`.
+    fn solve_columns(&mut self, context: &Context<'_>, elements: &[u32]) -> (Dense, Dense) {
+        let m = context.columns.len();
+        let mut rhs = Dense::zeros(self.count, m);
+        for (j, column) in context.columns.iter().enumerate() {
+            if let Column::Force(entries) = column {
+                for &(node, direction, value) in entries {
+                    if let Some(u) = self.unknown(context, node, direction as usize) {
+                        rhs.values[j * self.count + u] += value;
+                    }
+                }
+            }
+        }
+        let energy = context.supports.couplings(context, elements, |node, direction, j, force| {
+            if let Some(u) = self.unknown(context, node, direction) {
+                rhs.values[j * self.count + u] -= force;
+            }
+        });
+        let mut solution = rhs.clone();
+        if let Some(factor) = &self.factor {
+            factor.solve(&mut solution);
+        }
+        let mut products = Dense::zeros(m, m);
+        for j in 0..m {
+            for i in 0..m {
+                products.values[j * m + i] = rhs.column(i).iter().zip(solution.column(j)).map(|(r, u)| r * u).sum();
+            }
+        }
+        self.columns = solution;
+        (products, energy)
+    }
+
+    /// Drops the displacements of columns that only outputs needed.
+    pub fn keep_columns(&mut self, count: usize) {
+        self.columns.values.truncate(count * self.count);
+        self.columns.values.shrink_to_fit();
+        self.columns.columns = count;
+    }
+
+    /// Unknowns of the body under given column coefficients and contact forces (one per contact point of the model).
+    pub fn recover(&self, coefficients: &[f64], forces: &[f64]) -> Vec<f64> {
+        // L⁻¹ Bᵀ F is zero on the interior: only the backward half of the solve is left.
+        let mut contact = Dense::zeros(self.count, 1);
+        for (k, &p) in self.points.iter().enumerate() {
+            let force = forces[p as usize];
+            if force != 0.0 {
+                for (o, y) in contact.values[self.interior..].iter_mut().zip(self.spread.column(k)) {
+                    *o -= force * y;
+                }
+            }
+        }
+        if let Some(factor) = &self.factor {
+            factor.solve_transposed(&mut contact);
+        }
+        self.columns.multiply_add(coefficients, &mut contact.values);
+        contact.values
+    }
+
+    /// Numbers held by the factor.
+    pub fn factor_size(&self) -> usize {
+        self.factor.as_ref().map_or(0, |f| f.size().values)
+    }
+
+    /// Whether a factorisation was needed.
+    pub fn is_factored(&self) -> bool {
+        self.factor.is_some()
+    }
+}
+
+/// Body-local nodes with an unknown that a contact point touches, ascending.
+fn retained_nodes(context: &Context<'_>, nodes: &[NodeId], body_points: &[u32]) -> Vec<u32> {
+    let mut touched = vec![false; nodes.len()];
+    for &p in body_points {
+        for node in context.points[p as usize].nodes() {
+            let local = context.local[node.index()] as usize;
+            if nodes.get(local) == Some(&node) && (0..3).any(|d| !context.supports.is_prescribed(node, d)) {
+                touched[local] = true;
+            }
+        }
+    }
+    (0..nodes.len() as u32).filter(|&i| touched[i as usize]).collect()
+}

@@ -1,0 +1,150 @@
+//! Prescribed directions and the elements that carry their reactions.
+
+use super::assembly::element_stiffness;
+use super::body::Context;
+use super::columns::Column;
+use super::linear::Dense;
+use crate::element::brick::{self, Elasticity};
+use crate::model::{Model, NodeId};
+
+/// Which directions of which nodes are prescribed.
+pub struct Supports {
+    /// Bit d of a node: direction d is prescribed.
+    directions: Vec<u8>,
+}
+
+impl Supports {
+    /// Collects the prescribed directions of the model part and of all steps.
+    pub fn new(model: &Model) -> Self {
+        let mut directions = vec![0u8; model.mesh.nodes.len()];
+        let lines = model.initial_boundaries.iter().chain(model.steps.iter().flat_map(|s| &s.boundaries));
+        for line in lines {
+            for node in &line.nodes {
+                directions[node.index()] |= 1 << line.direction;
+            }
+        }
+        Self { directions }
+    }
+
+    /// Whether a direction (0..3) of a node is prescribed.
+    pub fn is_prescribed(&self, node: NodeId, direction: usize) -> bool {
+        self.directions[node.index()] & (1 << direction) != 0
+    }
+
+    /// Whether any direction of a node is prescribed.
+    pub fn touches(&self, node: NodeId) -> bool {
+        self.directions[node.index()] != 0
+    }
+
+    /// Forces that unit displacement columns cause on every direction of the elements they touch: calls
+    /// `add(node, direction, column, force)` with `K û_j`, element by element. Returns `û_iᵀ K û_j`.
+    pub fn couplings(
+        &self,
+        context: &Context<'_>,
+        elements: &[u32],
+        mut add: impl FnMut(NodeId, usize, usize, f64),
+    ) -> Dense {
+        let mut energy = Dense::zeros(context.columns.len(), context.columns.len());
+        let patterns = Patterns::new(context.model, context.columns);
+        let mut touched: Vec<(usize, [[f64; 3]; 8])> = Vec::new();
+        for &e in elements {
+            let nodes = context.model.mesh.elements[e as usize].nodes;
+            patterns.gather(nodes, &mut touched);
+            if touched.is_empty() {
+                continue;
+            }
+            let k = element_stiffness(context.model, context.elasticities, e);
+            for (j, u) in &touched {
+                let forces = brick::internal_force(&k, u);
+                for (i, v) in &touched {
+                    energy.column_mut(*j)[*i] +=
+                        v.iter().flatten().zip(forces.iter().flatten()).map(|(v, f)| v * f).sum::<f64>();
+                }
+                for (node, force) in nodes.into_iter().zip(forces) {
+                    for (direction, f) in force.into_iter().enumerate() {
+                        add(node, direction, *j, f);
+                    }
+                }
+            }
+        }
+        energy
+    }
+}
+
+/// Displacement columns by node.
+struct Patterns {
+    /// Start of each node's entries; one more than there are nodes.
+    starts: Vec<u32>,
+    /// (column, direction, value).
+    entries: Vec<(u32, u8, f64)>,
+}
+
+impl Patterns {
+    fn new(model: &Model, columns: &[Column]) -> Self {
+        let each = || {
+            columns.iter().enumerate().filter_map(|(j, c)| match c {
+                Column::Displacement(entries) => Some((j as u32, entries)),
+                Column::Force(_) => None,
+            })
+        };
+        let mut starts = vec![0u32; model.mesh.nodes.len() + 1];
+        for (_, entries) in each() {
+            for (node, ..) in entries {
+                starts[node.index() + 1] += 1;
+            }
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut fill = starts.clone();
+        let mut out = vec![(0, 0, 0.0); starts[starts.len() - 1] as usize];
+        for (j, entries) in each() {
+            for &(node, direction, value) in entries {
+                let slot = &mut fill[node.index()];
+                out[*slot as usize] = (j, direction, value);
+                *slot += 1;
+            }
+        }
+        Self { starts, entries: out }
+    }
+
+    /// Columns with a value on one of the nodes, with their displacements of these nodes; by column.
+    fn gather(&self, nodes: [NodeId; 8], out: &mut Vec<(usize, [[f64; 3]; 8])>) {
+        out.clear();
+        for (a, node) in nodes.into_iter().enumerate() {
+            for &(j, direction, value) in
+                &self.entries[self.starts[node.index()] as usize..self.starts[node.index() + 1] as usize]
+            {
+                let at = match out.iter().position(|&(column, _)| column == j as usize) {
+                    Some(at) => at,
+                    None => {
+                        out.push((j as usize, [[0.0; 3]; 8]));
+                        out.len() - 1
+                    }
+                };
+                out[at].1[a][direction as usize] = value;
+            }
+        }
+        out.sort_by_key(|&(column, _)| column);
+    }
+}
+
+/// `K u` of the given elements at their nodes; the caller keeps what belongs to prescribed directions.
+pub fn internal_forces(
+    model: &Model,
+    elasticities: &[Elasticity],
+    elements: &[u32],
+    displacement: &[[f64; 3]],
+    mut add: impl FnMut(NodeId, usize, f64),
+) {
+    for &e in elements {
+        let nodes = model.mesh.elements[e as usize].nodes;
+        let k = element_stiffness(model, elasticities, e);
+        let u = nodes.map(|n| displacement[n.index()]);
+        for (node, force) in nodes.into_iter().zip(brick::internal_force(&k, &u)) {
+            for (direction, f) in force.into_iter().enumerate() {
+                add(node, direction, f);
+            }
+        }
+    }
+}

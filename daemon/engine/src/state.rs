@@ -1,0 +1,168 @@
+//! The mutable part of an analysis, and its checkpoint.
+//!
+//! ```text
+//! bytes 0..4   "OVCK"
+//! bytes 4..8   version, u32 little-endian
+//! bytes 8..16  fingerprint of the model, u64 little-endian
+//! bytes 16..20 CRC-32 of everything after byte 20, u32 little-endian
+//! bytes 20..   the state in postcard: floats are raw little-endian, no pointers, no padding
+//! ```
+
+use serde::{Deserialize, Serialize};
+
+use crate::simulation::{RestoreError, WorkCounts};
+
+const MAGIC: [u8; 4] = *b"OVCK";
+/// Raised whenever the meaning of the payload changes.
+const VERSION: u32 = 1;
+const HEADER: usize = 20;
+
+/// Everything that an increment changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Index of the step.
+    pub step: u32,
+    /// Time since the start of the step.
+    pub step_time: f64,
+    /// Next automatic increment.
+    pub increment_next: f64,
+    /// Easy increments in a row.
+    pub easy_increments: u32,
+    /// Work per step begun so far.
+    pub counts: Vec<WorkCounts>,
+    /// Present coefficient of each column.
+    pub coefficients: Vec<f64>,
+    /// Coefficient of each column at the start of the step.
+    pub step_start: Vec<f64>,
+    /// Replaced magnitude of each input, if any.
+    pub magnitudes: Vec<Option<f64>>,
+    /// Whether each input is driven from outside.
+    pub driven: Vec<bool>,
+    /// Value that each input shall have at the end of the next advance.
+    pub pending: Vec<Option<f64>>,
+    /// Contact force of each point \[force\].
+    pub forces: Vec<f64>,
+    /// Status of each point.
+    pub closed: Vec<bool>,
+    /// Relative tangential displacement of each point since the start, first tangents then second [length].
+    pub tangential: Vec<f64>,
+    /// Accumulated slip while closed, in the same layout [length].
+    pub slip: Vec<f64>,
+    /// Work-conjugate value of each real column at the end of the last increment.
+    pub conjugates: Vec<f64>,
+    /// ALLWK \[energy\].
+    pub external_work: f64,
+    /// Total time of the last status change; 0 before the first.
+    pub last_change: f64,
+}
+
+impl State {
+    /// Bytes of a checkpoint.
+    pub fn encode(&self, fingerprint: u64) -> Vec<u8> {
+        let payload = postcard::to_stdvec(self).expect("a plain struct of numbers always encodes");
+        let mut bytes = Vec::with_capacity(HEADER + payload.len());
+        bytes.extend(MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend(fingerprint.to_le_bytes());
+        bytes.extend(crc32fast::hash(&payload).to_le_bytes());
+        bytes.extend(payload);
+        bytes
+    }
+
+    /// Reads a checkpoint and checks that it has the shape of `like`.
+    pub fn decode(bytes: &[u8], fingerprint: u64, like: &State, steps: usize) -> Result<Self, RestoreError> {
+        let damaged = |detail: &str| RestoreError::Damaged { detail: detail.into() };
+        let Some((header, payload)) = bytes.split_at_checked(HEADER) else {
+            return Err(damaged("shorter than its header"));
+        };
+        let word = |at: usize| u32::from_le_bytes([header[at], header[at + 1], header[at + 2], header[at + 3]]);
+        if header[..4] != MAGIC {
+            return Err(damaged("it does not begin with OVCK"));
+        }
+        if word(4) != VERSION {
+            return Err(RestoreError::Version { found: word(4), supported: VERSION });
+        }
+        let found = u64::from(word(8)) | u64::from(word(12)) << 32;
+        if found != fingerprint {
+            return Err(RestoreError::OtherModel { found, expected: fingerprint });
+        }
+        if word(16) != crc32fast::hash(payload) {
+            return Err(damaged("the checksum does not match"));
+        }
+        let (state, rest) =
+            postcard::take_from_bytes::<State>(payload).map_err(|_| damaged("the payload cannot be decoded"))?;
+        let lengths = |s: &State| {
+            [
+                s.coefficients.len(),
+                s.step_start.len(),
+                s.magnitudes.len(),
+                s.driven.len(),
+                s.pending.len(),
+                s.forces.len(),
+                s.closed.len(),
+                s.tangential.len(),
+                s.slip.len(),
+                s.conjugates.len(),
+            ]
+        };
+        let step = state.step as usize;
+        if !rest.is_empty() || lengths(&state) != lengths(like) || step >= steps || state.counts.len() != step + 1 {
+            return Err(damaged("the payload does not fit this model"));
+        }
+        Ok(state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state() -> State {
+        State {
+            step: 0,
+            step_time: 0.25,
+            increment_next: 0.05,
+            easy_increments: 1,
+            counts: vec![WorkCounts::default()],
+            coefficients: vec![1.5, -0.0],
+            step_start: vec![0.0, 0.0],
+            magnitudes: vec![None],
+            driven: vec![true],
+            pending: vec![Some(f64::MIN_POSITIVE)],
+            forces: vec![0.1, 0.2, 0.3],
+            closed: vec![true, false, true],
+            tangential: vec![0.0; 6],
+            slip: vec![1e-300; 6],
+            conjugates: vec![2.0, 3.0],
+            external_work: 0.125,
+            last_change: 0.2,
+        }
+    }
+
+    #[test]
+    fn a_checkpoint_comes_back_bit_for_bit() {
+        let bytes = state().encode(7);
+        let back = State::decode(&bytes, 7, &state(), 1).expect("own bytes");
+        assert_eq!(back, state());
+        assert!(back.coefficients[1].is_sign_negative());
+    }
+
+    #[test]
+    fn every_damaged_byte_and_every_cut_is_refused() {
+        let bytes = state().encode(7);
+        for at in 0..bytes.len() {
+            let mut bad = bytes.clone();
+            bad[at] ^= 0x41;
+            assert!(State::decode(&bad, 7, &state(), 1).is_err(), "byte {at}");
+            assert!(State::decode(&bytes[..at], 7, &state(), 1).is_err(), "cut at {at}");
+        }
+    }
+
+    #[test]
+    fn another_model_or_version_is_named() {
+        let mut bytes = state().encode(7);
+        assert_eq!(State::decode(&bytes, 8, &state(), 1), Err(RestoreError::OtherModel { found: 7, expected: 8 }));
+        bytes[4] = 9;
+        assert_eq!(State::decode(&bytes, 7, &state(), 1), Err(RestoreError::Version { found: 9, supported: VERSION }));
+    }
+}
