@@ -48,7 +48,7 @@ impl Graph {
     }
 
     /// Everything that a package links, itself not counted.
-    fn reach(&self, package: &str) -> BTreeSet<&str> {
+    fn reach<'a>(&'a self, package: &'a str) -> BTreeSet<&'a str> {
         let mut seen = BTreeSet::new();
         let mut open = vec![package];
         while let Some(next) = open.pop() {
@@ -64,7 +64,11 @@ const RULES: &[(&str, &[&str])] = &[
     ("overclosure", &["tokio*", "zenoh*", "mio", "socket2", "overclosure-*"]),
     ("overclosure-protocol", &["overclosure", "tokio*", "zenoh*", "faer"]),
     ("overclosure-client", &["overclosure", "overclosure-fmu", "overclosure-daemon", "faer"]),
-    ("overclosure-fmu", &["tokio*", "zenoh*", "overclosure-protocol", "overclosure-client", "overclosure-daemon"]),
+    (
+        "overclosure-fmu",
+        &["tokio*", "zenoh*", "overclosure-protocol", "overclosure-client", "overclosure-packer", "fmi-rs", "zip"],
+    ),
+    ("overclosure-packer", &["tokio*", "zenoh*", "overclosure-protocol", "overclosure-client"]),
 ];
 
 fn matches(rule: &str, name: &str) -> bool {
