@@ -75,11 +75,7 @@ impl PressureLaw for CalculixExponential {
             return LawPoint::default();
         }
         if overclosure > self.switch {
-            let LawPoint {
-                pressure,
-                stiffness,
-                energy,
-            } = self.at_switch;
+            let LawPoint { pressure, stiffness, energy } = self.at_switch;
             return straight(overclosure - self.switch, pressure, stiffness, energy);
         }
         curve(overclosure * self.rate, self.pressure, self.rate)
@@ -114,24 +110,14 @@ fn curve(x: f64, p0: f64, rate: f64) -> LawPoint {
 pub(super) fn violations(clearance: f64, pressure: f64) -> Vec<LawError> {
     const LAW: &str = "calculix-exponential";
     let mut findings = Vec::new();
-    require_positive(&mut findings, "clearance", clearance);
-    require_positive(&mut findings, "pressure", pressure);
+    require_positive(&mut findings, "clearance (c0)", clearance);
+    require_positive(&mut findings, "pressure (p0)", pressure);
     if findings.is_empty() {
         let rate = LN_100 / clearance;
         require_in_range(&mut findings, LAW, "ln(100)/clearance", rate);
-        require_in_range(
-            &mut findings,
-            LAW,
-            "the end of the curved range",
-            EXPONENT_MAX / rate,
-        );
+        require_in_range(&mut findings, LAW, "the end of the curved range", EXPONENT_MAX / rate);
         let end = curve(EXPONENT_MAX, pressure, rate);
-        require_in_range(
-            &mut findings,
-            LAW,
-            "the largest curved pressure",
-            end.pressure,
-        );
+        require_in_range(&mut findings, LAW, "the largest curved pressure", end.pressure);
         require_in_range(&mut findings, LAW, "the largest slope", end.stiffness);
     }
     findings
@@ -145,24 +131,13 @@ mod tests {
     #[test]
     fn slope_and_pressure_are_derivatives() {
         let law = CalculixExponential::new(0.01, 1.0).unwrap();
-        check_law(
-            &law,
-            &[-0.02, -0.0099, -0.005, 0.0, 0.02, 0.0499, 0.0501, 0.3],
-            1e-7,
-        );
+        check_law(&law, &[-0.02, -0.0099, -0.005, 0.0, 0.02, 0.0499, 0.0501, 0.3], 1e-7);
     }
 
     #[test]
     fn every_clearance_changes_the_pressure_a_hundredfold() {
         let law = CalculixExponential::new(0.01, 1.0).unwrap();
-        for (h, p) in [
-            (-0.01, 0.01),
-            (-0.005, 0.1),
-            (0.0, 1.0),
-            (0.005, 10.0),
-            (0.01, 100.0),
-            (0.02, 1e4),
-        ] {
+        for (h, p) in [(-0.01, 0.01), (-0.005, 0.1), (0.0, 1.0), (0.005, 10.0), (0.01, 100.0), (0.02, 1e4)] {
             assert_close(law.evaluate(h).pressure, p, 1e-13, 0.0);
         }
         assert_eq!(law.evaluate(-0.010001), LawPoint::default());
@@ -170,12 +145,7 @@ mod tests {
 
     #[test]
     fn extremes_saturate_instead_of_overflowing() {
-        for (c0, p0) in [
-            (0.01, 1.0),
-            (1e-100, 1e100),
-            (1e150, 1e-150),
-            (1e-300, 1e-300),
-        ] {
+        for (c0, p0) in [(0.01, 1.0), (1e-100, 1e100), (1e150, 1e-150), (1e-300, 1e-300)] {
             assert_finite_everywhere(&CalculixExponential::new(c0, p0).unwrap());
         }
     }
@@ -188,17 +158,8 @@ mod tests {
 
     #[test]
     fn every_wrong_parameter_is_named() {
-        let text: Vec<String> = violations(0.0, f64::INFINITY)
-            .iter()
-            .map(ToString::to_string)
-            .collect();
-        assert!(
-            text[0].contains("clearance") && text[0].contains('0'),
-            "{text:?}"
-        );
-        assert!(
-            text[1].contains("pressure") && text[1].contains("inf"),
-            "{text:?}"
-        );
+        let text: Vec<String> = violations(0.0, f64::INFINITY).iter().map(ToString::to_string).collect();
+        assert!(text[0].contains("clearance") && text[0].contains('0'), "{text:?}");
+        assert!(text[1].contains("pressure") && text[1].contains("inf"), "{text:?}");
     }
 }

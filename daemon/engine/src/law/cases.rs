@@ -1,4 +1,4 @@
-//! The solver shall reproduce the closed-form values of the law cases in `tests/data/law_cases.json` within the tolerance that
+//! The solver shall reproduce the closed-form values of the law cases in `tests/data/cases.json` within the tolerance that
 //! each case states; an expected zero is compared absolutely, against the tolerance times the largest value of the case.
 
 use serde_json::Value;
@@ -6,38 +6,23 @@ use serde_json::Value;
 use super::*;
 
 fn case(id: &str) -> Value {
-    let text = include_str!("../../../../tests/data/law_cases.json");
+    let text = include_str!("../../../../tests/data/cases.json");
     let all: Value = serde_json::from_str(text).unwrap();
     let cases = all["cases"].as_array().unwrap();
-    cases
-        .iter()
-        .find(|c| c["id"] == id)
-        .unwrap_or_else(|| panic!("no case {id}"))
-        .clone()
+    cases.iter().find(|c| c["id"] == id).unwrap_or_else(|| panic!("no case {id}")).clone()
 }
 
 fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("{value} is not a number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value
-        .as_array()
-        .unwrap_or_else(|| panic!("{value} is not a list"))
-        .iter()
-        .map(number)
-        .collect()
+    value.as_array().unwrap_or_else(|| panic!("{value} is not a list")).iter().map(number).collect()
 }
 
 fn table(case: &Value) -> Tabular {
-    let points: Vec<(f64, f64)> = case["inputs"]["pairs_p_h"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|p| (number(&p[0]), number(&p[1])))
-        .collect();
+    let points: Vec<(f64, f64)> =
+        case["inputs"]["pairs_p_h"].as_array().unwrap().iter().map(|p| (number(&p[0]), number(&p[1]))).collect();
     Tabular::new(&points).unwrap()
 }
 
@@ -52,11 +37,9 @@ fn compare(case: &Value, law: &dyn PressureLaw) {
     let tolerance = number(&case["tolerance"]["value"]);
     let overclosures = numbers(&case["inputs"]["h"]);
     let mut compared = 0;
-    for (name, value) in [
-        ("p", (|p: LawPoint| p.pressure) as fn(LawPoint) -> f64),
-        ("dpdh", |p| p.stiffness),
-        ("U", |p| p.energy),
-    ] {
+    for (name, value) in
+        [("p", (|p: LawPoint| p.pressure) as fn(LawPoint) -> f64), ("dpdh", |p| p.stiffness), ("U", |p| p.energy)]
+    {
         let Some(expected) = case["expected"].get(name).map(numbers) else {
             continue;
         };
@@ -64,12 +47,7 @@ fn compare(case: &Value, law: &dyn PressureLaw) {
         let largest = expected.iter().fold(0.0f64, |m, e| m.max(e.abs()));
         for (&h, &expected) in overclosures.iter().zip(&expected) {
             let actual = value(law.evaluate(h));
-            let allowed = tolerance
-                * if expected == 0.0 {
-                    largest
-                } else {
-                    expected.abs()
-                };
+            let allowed = tolerance * if expected == 0.0 { largest } else { expected.abs() };
             assert!(
                 (actual - expected).abs() <= allowed,
                 "{}: {name}({h}) = {actual}, expected {expected}",
@@ -78,20 +56,12 @@ fn compare(case: &Value, law: &dyn PressureLaw) {
             compared += 1;
         }
     }
-    assert!(
-        compared >= overclosures.len(),
-        "{}: nothing compared",
-        case["id"]
-    );
+    assert!(compared >= overclosures.len(), "{}: nothing compared", case["id"]);
 }
 
 fn assert_relative(case: &Value, actual: f64, expected: &Value) {
     let (expected, tolerance) = (number(expected), number(&case["tolerance"]["value"]));
-    assert!(
-        (actual - expected).abs() <= tolerance * expected.abs(),
-        "{}: {actual}, expected {expected}",
-        case["id"]
-    );
+    assert!((actual - expected).abs() <= tolerance * expected.abs(), "{}: {actual}, expected {expected}", case["id"]);
 }
 
 #[test]
@@ -123,11 +93,7 @@ fn a05_exponential_with_a_stiffness_limit() {
     let case = case("A05");
     let (law, expected) = (exponential(&case), &case["expected"]);
     assert_relative(&case, law.continuation_start(), &expected["h_star"]);
-    assert_relative(
-        &case,
-        law.evaluate(law.continuation_start()).pressure,
-        &expected["p_star"],
-    );
+    assert_relative(&case, law.evaluate(law.continuation_start()).pressure, &expected["p_star"]);
     compare(&case, &law);
 }
 
@@ -158,8 +124,5 @@ fn a10_tabular_that_starts_at_a_clearance() {
 fn a12_linear_without_separation() {
     let case = case("A12");
     let law = PressureOverclosure::Linear(Linear::new(number(&case["inputs"]["k"])).unwrap());
-    compare(
-        &case,
-        &ResolvedLaw::new(law, Separation::Prevented, LawProcedure::Explicit).unwrap(),
-    );
+    compare(&case, &ResolvedLaw::new(law, Separation::Prevented, LawProcedure::Explicit).unwrap());
 }

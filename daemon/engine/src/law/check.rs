@@ -6,22 +6,10 @@ use super::PressureLaw;
 /// Samples nearer than `step` to a kink are a mistake in the test.
 pub(crate) fn check_law(law: &dyn PressureLaw, samples: &[f64], step: f64) {
     for &h in samples {
-        assert!(
-            law.kinks().iter().all(|k| (h - k).abs() > step),
-            "sample {h} straddles a kink"
-        );
-        let (lo, at, hi) = (
-            law.evaluate(h - step),
-            law.evaluate(h),
-            law.evaluate(h + step),
-        );
+        assert!(law.kinks().iter().all(|k| (h - k).abs() > step), "sample {h} straddles a kink");
+        let (lo, at, hi) = (law.evaluate(h - step), law.evaluate(h), law.evaluate(h + step));
         let width = (h + step) - (h - step);
-        assert_close(
-            at.stiffness,
-            (hi.pressure - lo.pressure) / width,
-            1e-6,
-            1e-9,
-        );
+        assert_close(at.stiffness, (hi.pressure - lo.pressure) / width, 1e-6, 1e-9);
         assert_close(at.pressure, (hi.energy - lo.energy) / width, 1e-6, 1e-9);
     }
 }
@@ -43,10 +31,7 @@ pub(crate) fn assert_finite_everywhere(law: &dyn PressureLaw) {
     let mut last = 0.0;
     for h in ladder() {
         let at = law.evaluate(h);
-        assert!(
-            at.pressure.is_finite() && at.stiffness.is_finite() && at.energy.is_finite(),
-            "at {h:e}: {at:?}"
-        );
+        assert!(at.pressure.is_finite() && at.stiffness.is_finite() && at.energy.is_finite(), "at {h:e}: {at:?}");
         assert!(at.stiffness >= 0.0 && at.energy >= 0.0, "at {h:e}: {at:?}");
         assert!(at.pressure >= last, "the pressure falls at {h:e}");
         last = at.pressure;
@@ -57,23 +42,15 @@ pub(crate) fn assert_finite_everywhere(law: &dyn PressureLaw) {
 
 /// Numbers of both signs over the whole range of `f64`, ascending.
 fn ladder() -> Vec<f64> {
-    let mut positive: Vec<f64> = (-307..=308)
-        .flat_map(|e| [1.0, 3.3].map(|m| m * 10f64.powi(e)))
-        .collect();
+    let mut positive: Vec<f64> = (-307..=308).flat_map(|e| [1.0, 3.3].map(|m| m * 10f64.powi(e))).collect();
     positive.retain(|h| h.is_finite());
     positive.push(f64::MAX);
     let negative = positive.iter().rev().map(|h| -h);
-    negative
-        .chain([0.0])
-        .chain(positive.iter().copied())
-        .collect()
+    negative.chain([0.0]).chain(positive.iter().copied()).collect()
 }
 
 /// Within an absolute plus a relative tolerance.
 pub(crate) fn assert_close(actual: f64, expected: f64, relative: f64, absolute: f64) {
     let allowed = absolute + relative * expected.abs();
-    assert!(
-        (actual - expected).abs() <= allowed,
-        "{actual} is not {expected} within {allowed:e}"
-    );
+    assert!((actual - expected).abs() <= allowed, "{actual} is not {expected} within {allowed:e}");
 }

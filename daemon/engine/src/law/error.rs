@@ -44,8 +44,8 @@ pub enum LawError {
     },
     /// A table that begins with a jump.
     #[error(
-        "table point 1: pressure {pressure} at overclosure {overclosure} is not 0, so the pressure would jump there; \
-         begin the table with the overclosure of zero pressure"
+        "the first pressure of a table must be zero, not {pressure} (at overclosure {overclosure}), else the pressure would jump \
+         there; begin the table with the overclosure of zero pressure"
     )]
     FirstPressureNotZero {
         /// First pressure.
@@ -75,17 +75,8 @@ pub(super) fn require_positive(findings: &mut Vec<LawError>, parameter: &'static
 }
 
 /// Appends a finding unless a derived constant is positive and finite.
-pub(super) fn require_in_range(
-    findings: &mut Vec<LawError>,
-    law: &'static str,
-    quantity: &'static str,
-    value: f64,
-) {
+pub(super) fn require_in_range(findings: &mut Vec<LawError>, law: &'static str, quantity: &'static str, value: f64) {
     if !(value.is_finite() && value > 0.0) {
-        findings.push(LawError::OutOfRange {
-            law,
-            quantity,
-            value,
-        });
+        findings.push(LawError::OutOfRange { law, quantity, value });
     }
 }

@@ -48,10 +48,7 @@ pub struct Exponential {
 impl Exponential {
     /// With the straight continuation beyond an overclosure of six times the clearance. Refuses parameters
     /// (clearance [length], pressure [pressure]) that are not positive and finite.
-    pub fn new(
-        clearance_at_zero_pressure: f64,
-        pressure_at_zero_clearance: f64,
-    ) -> Result<Self, LawError> {
+    pub fn new(clearance_at_zero_pressure: f64, pressure_at_zero_clearance: f64) -> Result<Self, LawError> {
         Self::build(clearance_at_zero_pressure, pressure_at_zero_clearance, None)
     }
 
@@ -61,11 +58,7 @@ impl Exponential {
         pressure_at_zero_clearance: f64,
         stiffness_max: f64,
     ) -> Result<Self, LawError> {
-        Self::build(
-            clearance_at_zero_pressure,
-            pressure_at_zero_clearance,
-            Some(stiffness_max),
-        )
+        Self::build(clearance_at_zero_pressure, pressure_at_zero_clearance, Some(stiffness_max))
     }
 
     pub(super) fn build(c0: f64, p0: f64, stiffness_max: Option<f64>) -> Result<Self, LawError> {
@@ -115,11 +108,7 @@ impl Exponential {
 impl PressureLaw for Exponential {
     fn evaluate(&self, overclosure: f64) -> LawPoint {
         if overclosure >= self.switch {
-            let LawPoint {
-                pressure,
-                stiffness,
-                energy,
-            } = self.at_switch;
+            let LawPoint { pressure, stiffness, energy } = self.at_switch;
             return straight(overclosure - self.switch, pressure, stiffness, energy);
         }
         // The sum is exact near -c0, where the quotient h/c0 + 1 would cancel.
@@ -207,60 +196,30 @@ fn newton(start: f64, value_and_slope: impl Fn(f64) -> (f64, f64)) -> f64 {
 /// Everything that is wrong with the parameters.
 pub(super) fn violations(c0: f64, p0: f64, stiffness_max: Option<f64>) -> Vec<LawError> {
     let mut findings = Vec::new();
-    require_positive(&mut findings, "clearance_at_zero_pressure", c0);
-    require_positive(&mut findings, "pressure_at_zero_clearance", p0);
+    require_positive(&mut findings, "clearance_at_zero_pressure (c0)", c0);
+    require_positive(&mut findings, "pressure_at_zero_clearance (p0)", p0);
     if let Some(limit) = stiffness_max {
-        require_positive(&mut findings, "stiffness_max", limit);
+        require_positive(&mut findings, "stiffness_max (kmax)", limit);
     }
     if !findings.is_empty() {
         return findings;
     }
     let scale = p0 / (E - 1.0);
-    require_in_range(
-        &mut findings,
-        "exponential",
-        "the range of clearance",
-        c0 * CONTINUATION,
-    );
+    require_in_range(&mut findings, "exponential", "the range of clearance", c0 * CONTINUATION);
     match stiffness_max {
         None => {
             let end = curve(CONTINUATION, scale, c0);
-            require_in_range(
-                &mut findings,
-                "exponential",
-                "the largest slope",
-                end.stiffness,
-            );
-            require_in_range(
-                &mut findings,
-                "exponential",
-                "the largest curved pressure",
-                end.pressure,
-            );
+            require_in_range(&mut findings, "exponential", "the largest slope", end.stiffness);
+            require_in_range(&mut findings, "exponential", "the largest curved pressure", end.pressure);
         }
         Some(limit) => {
             // Up to about 709 the exponential itself is representable.
             let kappa = limit * (c0 / scale);
-            require_in_range(
-                &mut findings,
-                "exponential",
-                "stiffness_max c0 (e-1)/p0",
-                kappa,
-            );
+            require_in_range(&mut findings, "exponential", "stiffness_max c0 (e-1)/p0", kappa);
             if findings.is_empty() {
                 let end = curve(reduced_at_slope(kappa), scale, c0);
-                require_in_range(
-                    &mut findings,
-                    "exponential",
-                    "the pressure at stiffness_max",
-                    end.pressure,
-                );
-                require_in_range(
-                    &mut findings,
-                    "exponential",
-                    "the initial slope",
-                    scale / c0,
-                );
+                require_in_range(&mut findings, "exponential", "the pressure at stiffness_max", end.pressure);
+                require_in_range(&mut findings, "exponential", "the initial slope", scale / c0);
             }
         }
     }
@@ -278,17 +237,11 @@ mod tests {
 
     #[test]
     fn slope_and_pressure_are_derivatives() {
-        let samples = [
-            -0.02, -0.009, -0.005, -0.0049, 0.0, 0.01, 0.03, 0.0599, 0.0601, 0.2,
-        ];
+        let samples = [-0.02, -0.009, -0.005, -0.0049, 0.0, 0.01, 0.03, 0.0599, 0.0601, 0.2];
         check_law(&law(), &samples, 1e-6);
         check_law(&law(), &[-0.0099], 1e-8);
         let limited = Exponential::with_stiffness_max(0.01, 5.0, 2e4).unwrap();
-        check_law(
-            &limited,
-            &[-0.02, -0.005, 0.0, 0.0188, 0.0189, 0.05, 0.5],
-            1e-6,
-        );
+        check_law(&limited, &[-0.02, -0.005, 0.0, 0.0188, 0.0189, 0.05, 0.5], 1e-6);
         let early = Exponential::with_stiffness_max(0.01, 5.0, 500.0).unwrap();
         check_law(&early, &[-0.02, -0.008, -0.004, 0.0, 0.05, 0.5], 1e-6);
     }
@@ -300,12 +253,7 @@ mod tests {
         for n in [20, 30, 40, 50] {
             let u = 0.5f64.powi(n);
             let at = law.evaluate(u - 1.0);
-            assert_close(
-                at.pressure,
-                u * u * (1.0 + u / 2.0 + u * u / 6.0),
-                1e-15,
-                0.0,
-            );
+            assert_close(at.pressure, u * u * (1.0 + u / 2.0 + u * u / 6.0), 1e-15, 0.0);
             assert_close(at.stiffness, 2.0 * u + 1.5 * u * u, 1e-12, 0.0);
             assert_close(at.energy, u * u * u / 3.0 + u.powi(4) / 8.0, 1e-12, 0.0);
         }
@@ -315,12 +263,7 @@ mod tests {
     fn both_forms_of_the_energy_agree_where_they_meet() {
         let u: f64 = 0.5;
         let below = f64::from_bits(u.to_bits() - 1);
-        assert_close(
-            reduced_energy(below, below.exp()),
-            reduced_energy(u, u.exp()),
-            1e-14,
-            0.0,
-        );
+        assert_close(reduced_energy(below, below.exp()), reduced_energy(u, u.exp()), 1e-14, 0.0);
     }
 
     #[test]
@@ -332,10 +275,7 @@ mod tests {
 
     #[test]
     fn the_continuation_is_smooth() {
-        for law in [
-            law(),
-            Exponential::with_stiffness_max(0.01, 5.0, 500.0).unwrap(),
-        ] {
+        for law in [law(), Exponential::with_stiffness_max(0.01, 5.0, 500.0).unwrap()] {
             let at = law.continuation_start();
             let (below, above) = (law.evaluate(at - 1e-12), law.evaluate(at + 1e-12));
             assert_close(above.pressure, below.pressure, 1e-9, 0.0);
@@ -353,13 +293,7 @@ mod tests {
 
     #[test]
     fn extremes_saturate_instead_of_overflowing() {
-        for (c0, p0) in [
-            (0.01, 5.0),
-            (1e-150, 1e150),
-            (1e150, 1e-150),
-            (1e-9, 1e12),
-            (1e307, 1e300),
-        ] {
+        for (c0, p0) in [(0.01, 5.0), (1e-150, 1e150), (1e150, 1e-150), (1e-9, 1e12), (1e307, 1e300)] {
             assert_finite_everywhere(&Exponential::new(c0, p0).unwrap());
         }
         for limit in [1e-100, 1.0, 1e200] {
@@ -369,9 +303,7 @@ mod tests {
 
     #[test]
     fn inverse_returns_the_overclosure() {
-        let samples = [
-            -0.00999, -0.009, -0.003, 0.0, 0.002, 0.01, 0.05, 0.06, 0.3, 1e5,
-        ];
+        let samples = [-0.00999, -0.009, -0.003, 0.0, 0.002, 0.01, 0.05, 0.06, 0.3, 1e5];
         assert_inverse(&law(), &samples, -0.01);
         let limited = Exponential::with_stiffness_max(0.01, 5.0, 500.0).unwrap();
         assert_inverse(&limited, &[-0.009, -0.004, 0.0, 0.3], -0.01);
@@ -380,24 +312,10 @@ mod tests {
     #[test]
     fn every_wrong_parameter_is_named() {
         assert_eq!(violations(0.0, -1.0, Some(f64::NAN)).len(), 3);
-        for (c0, p0, name) in [
-            (-0.01, 5.0, "clearance_at_zero_pressure"),
-            (0.01, 0.0, "pressure_at_zero_clearance"),
-        ] {
-            assert!(
-                Exponential::new(c0, p0)
-                    .unwrap_err()
-                    .to_string()
-                    .contains(name)
-            );
+        for (c0, p0, name) in [(-0.01, 5.0, "clearance_at_zero_pressure"), (0.01, 0.0, "pressure_at_zero_clearance")] {
+            assert!(Exponential::new(c0, p0).unwrap_err().to_string().contains(name));
         }
-        assert!(matches!(
-            Exponential::new(1e-300, 1e300),
-            Err(LawError::OutOfRange { .. })
-        ));
-        assert!(matches!(
-            Exponential::new(1e308, 1.0),
-            Err(LawError::OutOfRange { .. })
-        ));
+        assert!(matches!(Exponential::new(1e-300, 1e300), Err(LawError::OutOfRange { .. })));
+        assert!(matches!(Exponential::new(1e308, 1.0), Err(LawError::OutOfRange { .. })));
     }
 }

@@ -48,18 +48,14 @@ impl PressureLaw for Linear {
     }
 
     fn overclosure_at(&self, pressure: f64) -> f64 {
-        if pressure <= 0.0 {
-            0.0
-        } else {
-            saturate(pressure / self.stiffness)
-        }
+        if pressure <= 0.0 { 0.0 } else { saturate(pressure / self.stiffness) }
     }
 }
 
 /// Everything that is wrong with the parameters.
 pub(super) fn violations(stiffness: f64) -> Vec<LawError> {
     let mut findings = Vec::new();
-    require_positive(&mut findings, "stiffness", stiffness);
+    require_positive(&mut findings, "stiffness (slope k)", stiffness);
     findings
 }
 
@@ -76,14 +72,8 @@ mod tests {
 
     #[test]
     fn touching_without_overclosure_gives_nothing() {
-        assert_eq!(
-            Linear::new(250.0).unwrap().evaluate(0.0),
-            LawPoint::default()
-        );
-        assert_eq!(
-            Linear::new(250.0).unwrap().evaluate(-0.0),
-            LawPoint::default()
-        );
+        assert_eq!(Linear::new(250.0).unwrap().evaluate(0.0), LawPoint::default());
+        assert_eq!(Linear::new(250.0).unwrap().evaluate(-0.0), LawPoint::default());
     }
 
     #[test]
@@ -91,10 +81,7 @@ mod tests {
         for stiffness in [1e-300, 1.0, 1e300] {
             assert_finite_everywhere(&Linear::new(stiffness).unwrap());
         }
-        assert_eq!(
-            Linear::new(1e300).unwrap().evaluate(1e300).pressure,
-            f64::MAX
-        );
+        assert_eq!(Linear::new(1e300).unwrap().evaluate(1e300).pressure, f64::MAX);
     }
 
     #[test]
@@ -106,10 +93,7 @@ mod tests {
     fn stiffness_must_be_positive_and_finite() {
         for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = Linear::new(stiffness).unwrap_err().to_string();
-            assert!(
-                error.contains("stiffness") && error.contains(&stiffness.to_string()),
-                "{error}"
-            );
+            assert!(error.contains("stiffness") && error.contains(&stiffness.to_string()), "{error}");
         }
     }
 }

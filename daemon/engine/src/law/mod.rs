@@ -91,21 +91,16 @@ impl PressureOverclosure {
     /// The numbers from which this law was made.
     pub fn parameters(&self) -> LawParameters {
         match self {
-            Self::Linear(law) => LawParameters::Linear {
-                stiffness: law.stiffness(),
-            },
-            Self::Tabular(law) => LawParameters::Tabular {
-                points: law.points(),
-            },
+            Self::Linear(law) => LawParameters::Linear { stiffness: law.stiffness() },
+            Self::Tabular(law) => LawParameters::Tabular { points: law.points() },
             Self::Exponential(law) => LawParameters::Exponential {
                 clearance_at_zero_pressure: law.clearance_at_zero_pressure(),
                 pressure_at_zero_clearance: law.pressure_at_zero_clearance(),
                 stiffness_max: law.stiffness_max(),
             },
-            Self::CalculixExponential(law) => LawParameters::CalculixExponential {
-                clearance: law.clearance(),
-                pressure: law.pressure(),
-            },
+            Self::CalculixExponential(law) => {
+                LawParameters::CalculixExponential { clearance: law.clearance(), pressure: law.pressure() }
+            }
         }
     }
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CalculixExponential, Exponential, LawError, Linear, PressureOverclosure, Tabular,
-    calculix_exponential, exponential, linear, tabular,
+    CalculixExponential, Exponential, LawError, Linear, PressureOverclosure, Tabular, calculix_exponential,
+    exponential, linear, tabular,
 };
 
 /// Parameters of a law, not yet validated; `PressureOverclosure::try_from` makes the law.
@@ -45,19 +45,12 @@ impl LawParameters {
         match self {
             Self::Linear { stiffness } => linear::violations(*stiffness),
             Self::Tabular { points } => tabular::violations(points),
-            Self::Exponential {
-                clearance_at_zero_pressure,
-                pressure_at_zero_clearance,
-                stiffness_max,
-            } => exponential::violations(
-                *clearance_at_zero_pressure,
-                *pressure_at_zero_clearance,
-                *stiffness_max,
-            ),
-            Self::CalculixExponential {
-                clearance,
-                pressure,
-            } => calculix_exponential::violations(*clearance, *pressure),
+            Self::Exponential { clearance_at_zero_pressure, pressure_at_zero_clearance, stiffness_max } => {
+                exponential::violations(*clearance_at_zero_pressure, *pressure_at_zero_clearance, *stiffness_max)
+            }
+            Self::CalculixExponential { clearance, pressure } => {
+                calculix_exponential::violations(*clearance, *pressure)
+            }
         }
     }
 }
@@ -70,19 +63,16 @@ impl TryFrom<LawParameters> for PressureOverclosure {
         Ok(match parameters {
             LawParameters::Linear { stiffness } => Self::Linear(Linear::new(stiffness)?),
             LawParameters::Tabular { points } => Self::Tabular(Tabular::new(&points)?),
-            LawParameters::Exponential {
-                clearance_at_zero_pressure,
-                pressure_at_zero_clearance,
-                stiffness_max,
-            } => Self::Exponential(Exponential::build(
-                clearance_at_zero_pressure,
-                pressure_at_zero_clearance,
-                stiffness_max,
-            )?),
-            LawParameters::CalculixExponential {
-                clearance,
-                pressure,
-            } => Self::CalculixExponential(CalculixExponential::new(clearance, pressure)?),
+            LawParameters::Exponential { clearance_at_zero_pressure, pressure_at_zero_clearance, stiffness_max } => {
+                Self::Exponential(Exponential::build(
+                    clearance_at_zero_pressure,
+                    pressure_at_zero_clearance,
+                    stiffness_max,
+                )?)
+            }
+            LawParameters::CalculixExponential { clearance, pressure } => {
+                Self::CalculixExponential(CalculixExponential::new(clearance, pressure)?)
+            }
         })
     }
 }
@@ -96,9 +86,7 @@ mod tests {
             PressureOverclosure::Linear(Linear::new(250.0).unwrap()),
             PressureOverclosure::Tabular(Tabular::new(&[(0.0, -0.1), (2.0, 0.3)]).unwrap()),
             PressureOverclosure::Exponential(Exponential::new(0.01, 5.0).unwrap()),
-            PressureOverclosure::Exponential(
-                Exponential::with_stiffness_max(0.01, 5.0, 2e4).unwrap(),
-            ),
+            PressureOverclosure::Exponential(Exponential::with_stiffness_max(0.01, 5.0, 2e4).unwrap()),
             PressureOverclosure::CalculixExponential(CalculixExponential::new(0.01, 5.0).unwrap()),
         ]
     }
@@ -107,32 +95,17 @@ mod tests {
     fn every_law_survives_json_and_postcard() {
         for law in laws() {
             let json = serde_json::to_string(&law).unwrap();
-            assert_eq!(
-                serde_json::from_str::<PressureOverclosure>(&json).unwrap(),
-                law,
-                "{json}"
-            );
+            assert_eq!(serde_json::from_str::<PressureOverclosure>(&json).unwrap(), law, "{json}");
             let bytes = postcard::to_stdvec(&law).unwrap();
-            assert_eq!(
-                postcard::from_bytes::<PressureOverclosure>(&bytes).unwrap(),
-                law
-            );
+            assert_eq!(postcard::from_bytes::<PressureOverclosure>(&bytes).unwrap(), law);
         }
     }
 
     #[test]
     fn a_serialised_law_is_validated_when_read() {
-        let error = serde_json::from_str::<PressureOverclosure>(r#"{"linear":{"stiffness":-1.0}}"#)
-            .unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .contains("stiffness must be a positive finite number, not -1"),
-            "{error}"
-        );
-        let error =
-            serde_json::from_str::<PressureOverclosure>(r#"{"tabular":{"points":[[0,0]]}}"#)
-                .unwrap_err();
+        let error = serde_json::from_str::<PressureOverclosure>(r#"{"linear":{"stiffness":-1.0}}"#).unwrap_err();
+        assert!(error.to_string().contains("stiffness (slope k) must be a positive finite number, not -1"), "{error}");
+        let error = serde_json::from_str::<PressureOverclosure>(r#"{"tabular":{"points":[[0,0]]}}"#).unwrap_err();
         assert!(error.to_string().contains("at least two points"), "{error}");
     }
 }

@@ -59,22 +59,14 @@ impl ResolvedLaw {
         }
         let extension = match (separation, &law) {
             (Separation::Allowed, _) => None,
-            (Separation::Prevented, PressureOverclosure::Linear(law)) => {
-                Some((0.0, law.stiffness()))
-            }
-            (Separation::Prevented, PressureOverclosure::Tabular(law)) => {
-                Some((law.onset(), law.stiffness_first()))
-            }
+            (Separation::Prevented, PressureOverclosure::Linear(law)) => Some((0.0, law.stiffness())),
+            (Separation::Prevented, PressureOverclosure::Tabular(law)) => Some((law.onset(), law.stiffness_first())),
             (
                 Separation::Prevented,
                 PressureOverclosure::Exponential(_) | PressureOverclosure::CalculixExponential(_),
             ) => return Err(LawSpecError::SeparationPreventedExponential),
         };
-        Ok(Self {
-            law,
-            separation,
-            extension,
-        })
+        Ok(Self { law, separation, extension })
     }
 
     /// The law without its extension.
@@ -89,11 +81,7 @@ impl ResolvedLaw {
 
     /// Evaluates many overclosures. Both slices have one entry per overclosure; panics if their lengths differ.
     pub fn evaluate_into(&self, overclosures: &[f64], points: &mut [LawPoint]) {
-        assert_eq!(
-            overclosures.len(),
-            points.len(),
-            "one result per overclosure"
-        );
+        assert_eq!(overclosures.len(), points.len(), "one result per overclosure");
         for (point, &h) in points.iter_mut().zip(overclosures) {
             *point = self.evaluate(h);
         }
@@ -120,9 +108,7 @@ impl PressureLaw for ResolvedLaw {
 
     fn overclosure_at(&self, pressure: f64) -> f64 {
         match self.extension {
-            Some((onset, stiffness)) if pressure <= 0.0 => {
-                super::saturate(onset + pressure / stiffness)
-            }
+            Some((onset, stiffness)) if pressure <= 0.0 => super::saturate(onset + pressure / stiffness),
             Some(_) | None => self.law.overclosure_at(pressure),
         }
     }
@@ -146,12 +132,8 @@ pub(super) fn refusal(
     };
     match (separation, procedure) {
         (Separation::Allowed, _) => None,
-        (Separation::Prevented, _) if exponential => {
-            Some(LawSpecError::SeparationPreventedExponential)
-        }
-        (Separation::Prevented, LawProcedure::Standard) => {
-            Some(LawSpecError::SeparationPreventedStandard)
-        }
+        (Separation::Prevented, _) if exponential => Some(LawSpecError::SeparationPreventedExponential),
+        (Separation::Prevented, LawProcedure::Standard) => Some(LawSpecError::SeparationPreventedStandard),
         (Separation::Prevented, LawProcedure::Explicit) => None,
     }
 }
@@ -168,9 +150,7 @@ mod tests {
 
     #[test]
     fn tension_goes_on_with_the_first_slope() {
-        let law = tension(PressureOverclosure::Tabular(
-            Tabular::new(&[(0.0, -0.1), (2.0, 0.1), (9.0, 0.2)]).unwrap(),
-        ));
+        let law = tension(PressureOverclosure::Tabular(Tabular::new(&[(0.0, -0.1), (2.0, 0.1), (9.0, 0.2)]).unwrap()));
         assert_close(law.evaluate(-0.3).pressure, -2.0, 1e-14, 0.0);
         assert_close(law.evaluate(-0.3).energy, 0.2, 1e-14, 0.0);
         check_law(&law, &[-0.4, -0.1, 0.0, 0.15, 0.4], 1e-4);
@@ -179,53 +159,25 @@ mod tests {
         check_law(&law, &[-0.4, 0.0, 0.4], 1e-4);
         assert!(law.kinks().is_empty());
         let far = law.evaluate(-1e308);
-        assert!(
-            far.pressure == -f64::MAX && far.energy == f64::MAX,
-            "{far:?}"
-        );
+        assert!(far.pressure == -f64::MAX && far.energy == f64::MAX, "{far:?}");
     }
 
     #[test]
     fn refused_combinations_say_why() {
         let linear = PressureOverclosure::Linear(Linear::new(1.0).unwrap());
         let exponential = PressureOverclosure::Exponential(Exponential::new(1.0, 1.0).unwrap());
-        let limited = PressureOverclosure::Exponential(
-            Exponential::with_stiffness_max(1.0, 1.0, 9.0).unwrap(),
-        );
+        let limited = PressureOverclosure::Exponential(Exponential::with_stiffness_max(1.0, 1.0, 9.0).unwrap());
         use {LawProcedure::*, Separation::*};
         for (law, separation, procedure, expected) in [
-            (
-                &linear,
-                Prevented,
-                Standard,
-                Some(LawSpecError::SeparationPreventedStandard),
-            ),
+            (&linear, Prevented, Standard, Some(LawSpecError::SeparationPreventedStandard)),
             (&linear, Prevented, Explicit, None),
             (&linear, Allowed, Standard, None),
-            (
-                &exponential,
-                Prevented,
-                Standard,
-                Some(LawSpecError::SeparationPreventedExponential),
-            ),
-            (
-                &exponential,
-                Prevented,
-                Explicit,
-                Some(LawSpecError::SeparationPreventedExponential),
-            ),
-            (
-                &limited,
-                Allowed,
-                Standard,
-                Some(LawSpecError::StiffnessMaxNeedsExplicit),
-            ),
+            (&exponential, Prevented, Standard, Some(LawSpecError::SeparationPreventedExponential)),
+            (&exponential, Prevented, Explicit, Some(LawSpecError::SeparationPreventedExponential)),
+            (&limited, Allowed, Standard, Some(LawSpecError::StiffnessMaxNeedsExplicit)),
             (&limited, Allowed, Explicit, None),
         ] {
-            assert_eq!(
-                ResolvedLaw::new(law.clone(), separation, procedure).err(),
-                expected
-            );
+            assert_eq!(ResolvedLaw::new(law.clone(), separation, procedure).err(), expected);
         }
     }
 

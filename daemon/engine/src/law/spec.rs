@@ -21,9 +21,7 @@ pub struct LawSpec {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LawSpecError {
     /// No such law.
-    #[error(
-        "unknown law kind {kind:?}; kinds are linear, tabular, exponential and calculix-exponential"
-    )]
+    #[error("unknown law kind {kind:?}; kinds are linear, tabular, exponential and calculix-exponential")]
     UnknownKind {
         /// As given.
         kind: String,
@@ -123,16 +121,9 @@ impl std::error::Error for LawSpecErrors {}
 
 impl LawSpec {
     /// Reads a kind and pairs (name, value).
-    pub fn parse<N: AsRef<str>, V: AsRef<str>>(
-        kind: &str,
-        pairs: &[(N, V)],
-    ) -> Result<Self, LawSpecErrors> {
+    pub fn parse<N: AsRef<str>, V: AsRef<str>>(kind: &str, pairs: &[(N, V)]) -> Result<Self, LawSpecErrors> {
         let kind = Kind::parse(kind).map_err(|error| LawSpecErrors(vec![error]))?;
-        let mut reader = Reader {
-            kind,
-            values: Vec::new(),
-            errors: Vec::new(),
-        };
+        let mut reader = Reader { kind, values: Vec::new(), errors: Vec::new() };
         for (name, value) in pairs {
             reader.take(name.as_ref(), value.as_ref());
         }
@@ -143,9 +134,7 @@ impl LawSpec {
     pub fn resolve(&self) -> Result<ResolvedLaw, LawSpecErrors> {
         let violations = self.parameters.violations();
         if !violations.is_empty() {
-            return Err(LawSpecErrors(
-                violations.into_iter().map(LawSpecError::Law).collect(),
-            ));
+            return Err(LawSpecErrors(violations.into_iter().map(LawSpecError::Law).collect()));
         }
         PressureOverclosure::try_from(self.parameters.clone())
             .map_err(LawSpecError::Law)
@@ -154,10 +143,7 @@ impl LawSpec {
     }
 
     /// [`LawSpec::parse`], then [`LawSpec::resolve`].
-    pub fn read<N: AsRef<str>, V: AsRef<str>>(
-        kind: &str,
-        pairs: &[(N, V)],
-    ) -> Result<ResolvedLaw, LawSpecErrors> {
+    pub fn read<N: AsRef<str>, V: AsRef<str>>(kind: &str, pairs: &[(N, V)]) -> Result<ResolvedLaw, LawSpecErrors> {
         Self::parse(kind, pairs)?.resolve()
     }
 }
@@ -179,19 +165,11 @@ struct Name {
 }
 
 const fn required(long: &'static str, short: &'static str) -> Name {
-    Name {
-        long,
-        short,
-        required: true,
-    }
+    Name { long, short, required: true }
 }
 
 const fn optional(long: &'static str, short: &'static str) -> Name {
-    Name {
-        long,
-        short,
-        required: false,
-    }
+    Name { long, short, required: false }
 }
 
 const SEPARATION: Name = optional("separation", "separation");
@@ -212,9 +190,7 @@ impl Kind {
             "exponential" => Ok(Self::Exponential),
             "calculixexponential" => Ok(Self::CalculixExponential),
             "hard" => Err(LawSpecError::HardHasNoCurve),
-            _ => Err(LawSpecError::UnknownKind {
-                kind: text.to_owned(),
-            }),
+            _ => Err(LawSpecError::UnknownKind { kind: text.to_owned() }),
         }
     }
 
@@ -232,9 +208,7 @@ impl Kind {
             Self::Linear => &[STIFFNESS, SEPARATION, PROCEDURE],
             Self::Tabular => &[TABLE, SEPARATION, PROCEDURE],
             Self::Exponential => &[CLEARANCE, PRESSURE, STIFFNESS_MAX, SEPARATION, PROCEDURE],
-            Self::CalculixExponential => {
-                &[CALCULIX_CLEARANCE, CALCULIX_PRESSURE, SEPARATION, PROCEDURE]
-            }
+            Self::CalculixExponential => &[CALCULIX_CLEARANCE, CALCULIX_PRESSURE, SEPARATION, PROCEDURE],
         }
     }
 }
@@ -250,22 +224,14 @@ impl Reader {
     fn take(&mut self, name: &str, value: &str) {
         let key = plain(name);
         let known = self.kind.parameters();
-        match known
-            .iter()
-            .find(|n| key == plain(n.long) || key == n.short)
-        {
+        match known.iter().find(|n| key == plain(n.long) || key == n.short) {
             None => self.errors.push(LawSpecError::UnknownParameter {
                 kind: self.kind.name(),
                 name: name.to_owned(),
-                known: known
-                    .iter()
-                    .map(|n| described(*n))
-                    .collect::<Vec<_>>()
-                    .join(", "),
+                known: known.iter().map(|n| described(*n)).collect::<Vec<_>>().join(", "),
             }),
             Some(&found) if self.values.iter().any(|(n, _)| *n == found) => {
-                self.errors
-                    .push(LawSpecError::Repeated { name: found.long });
+                self.errors.push(LawSpecError::Repeated { name: found.long });
             }
             Some(&found) => self.values.push((found, value.trim().to_owned())),
         }
@@ -274,81 +240,45 @@ impl Reader {
     fn finish(mut self) -> Result<LawSpec, LawSpecErrors> {
         for name in self.kind.parameters().iter().filter(|n| n.required) {
             if self.text(*name).is_none() {
-                self.errors.push(LawSpecError::MissingParameter {
-                    kind: self.kind.name(),
-                    name: described(*name),
-                });
+                self.errors.push(LawSpecError::MissingParameter { kind: self.kind.name(), name: described(*name) });
             }
         }
         let parameters = self.parameters();
         let separation = self.choice(
             SEPARATION,
-            &[
-                ("allowed", Separation::Allowed),
-                ("prevented", Separation::Prevented),
-            ],
+            &[("allowed", Separation::Allowed), ("prevented", Separation::Prevented)],
             "allowed nor prevented",
         );
         let procedure = self.choice(
             PROCEDURE,
-            &[
-                ("standard", LawProcedure::Standard),
-                ("explicit", LawProcedure::Explicit),
-            ],
+            &[("standard", LawProcedure::Standard), ("explicit", LawProcedure::Explicit)],
             "standard nor explicit",
         );
         if !self.errors.is_empty() {
             // What can be said about the numbers that were read is said too.
             if let Some(parameters) = &parameters {
-                self.errors
-                    .extend(parameters.violations().into_iter().map(LawSpecError::Law));
+                self.errors.extend(parameters.violations().into_iter().map(LawSpecError::Law));
             }
             return Err(LawSpecErrors(self.errors));
         }
         let Some(parameters) = parameters else {
             return Err(LawSpecErrors(self.errors));
         };
-        let limited = matches!(
-            parameters,
-            LawParameters::Exponential {
-                stiffness_max: Some(_),
-                ..
-            }
-        );
-        let unnamed = if limited {
-            LawProcedure::Explicit
-        } else {
-            LawProcedure::Standard
-        };
-        let spec = LawSpec {
-            parameters,
-            separation: separation.unwrap_or_default(),
-            procedure: procedure.unwrap_or(unnamed),
-        };
-        let mut findings: Vec<LawSpecError> = spec
-            .parameters
-            .violations()
-            .into_iter()
-            .map(LawSpecError::Law)
-            .collect();
+        let limited = matches!(parameters, LawParameters::Exponential { stiffness_max: Some(_), .. });
+        let unnamed = if limited { LawProcedure::Explicit } else { LawProcedure::Standard };
+        let spec =
+            LawSpec { parameters, separation: separation.unwrap_or_default(), procedure: procedure.unwrap_or(unnamed) };
+        let mut findings: Vec<LawSpecError> = spec.parameters.violations().into_iter().map(LawSpecError::Law).collect();
         if let Ok(law) = PressureOverclosure::try_from(spec.parameters.clone()) {
             findings.extend(refusal(&law, spec.separation, spec.procedure));
         }
-        if findings.is_empty() {
-            Ok(spec)
-        } else {
-            Err(LawSpecErrors(findings))
-        }
+        if findings.is_empty() { Ok(spec) } else { Err(LawSpecErrors(findings)) }
     }
 
     fn parameters(&mut self) -> Option<LawParameters> {
         Some(match self.kind {
-            Kind::Linear => LawParameters::Linear {
-                stiffness: self.number(STIFFNESS)?,
-            },
-            Kind::Tabular => LawParameters::Tabular {
-                points: self.table()?,
-            },
+            Kind::Linear => LawParameters::Linear { stiffness: self.number(STIFFNESS)? },
+            Kind::Tabular => LawParameters::Tabular { points: self.table()? },
             Kind::Exponential => {
                 let (c0, p0) = (self.number(CLEARANCE), self.number(PRESSURE));
                 let limited = self.text(STIFFNESS_MAX).is_some();
@@ -363,33 +293,21 @@ impl Reader {
                 }
             }
             Kind::CalculixExponential => {
-                let (c0, p0) = (
-                    self.number(CALCULIX_CLEARANCE),
-                    self.number(CALCULIX_PRESSURE),
-                );
-                LawParameters::CalculixExponential {
-                    clearance: c0?,
-                    pressure: p0?,
-                }
+                let (c0, p0) = (self.number(CALCULIX_CLEARANCE), self.number(CALCULIX_PRESSURE));
+                LawParameters::CalculixExponential { clearance: c0?, pressure: p0? }
             }
         })
     }
 
     fn text(&self, name: Name) -> Option<&str> {
-        self.values
-            .iter()
-            .find(|(n, _)| *n == name)
-            .map(|(_, text)| text.as_str())
+        self.values.iter().find(|(n, _)| *n == name).map(|(_, text)| text.as_str())
     }
 
     fn number(&mut self, name: Name) -> Option<f64> {
         let text = self.text(name)?.to_owned();
         let number = text.parse().ok();
         if number.is_none() {
-            self.errors.push(LawSpecError::NotANumber {
-                name: name.long,
-                text,
-            });
+            self.errors.push(LawSpecError::NotANumber { name: name.long, text });
         }
         number
     }
@@ -399,42 +317,21 @@ impl Reader {
         let text = self.text(TABLE)?.to_owned();
         let before = self.errors.len();
         let mut points = Vec::new();
-        for (row, pair) in (1..).zip(
-            text.split(',')
-                .map(str::trim)
-                .filter(|pair| !pair.is_empty()),
-        ) {
-            let point = pair
-                .split_once(':')
-                .and_then(|(p, h)| Some((p.trim().parse().ok()?, h.trim().parse().ok()?)));
+        for (row, pair) in (1..).zip(text.split(',').map(str::trim).filter(|pair| !pair.is_empty())) {
+            let point = pair.split_once(':').and_then(|(p, h)| Some((p.trim().parse().ok()?, h.trim().parse().ok()?)));
             match point {
                 Some(point) => points.push(point),
-                None => self.errors.push(LawSpecError::TablePoint {
-                    row,
-                    text: pair.to_owned(),
-                }),
+                None => self.errors.push(LawSpecError::TablePoint { row, text: pair.to_owned() }),
             }
         }
         (self.errors.len() == before).then_some(points)
     }
 
-    fn choice<T: Copy>(
-        &mut self,
-        name: Name,
-        choices: &[(&str, T)],
-        words: &'static str,
-    ) -> Option<T> {
+    fn choice<T: Copy>(&mut self, name: Name, choices: &[(&str, T)], words: &'static str) -> Option<T> {
         let text = self.text(name)?.to_owned();
-        let found = choices
-            .iter()
-            .find(|(word, _)| plain(&text) == *word)
-            .map(|(_, choice)| *choice);
+        let found = choices.iter().find(|(word, _)| plain(&text) == *word).map(|(_, choice)| *choice);
         if found.is_none() {
-            self.errors.push(LawSpecError::UnknownChoice {
-                name: name.long,
-                text,
-                choices: words,
-            });
+            self.errors.push(LawSpecError::UnknownChoice { name: name.long, text, choices: words });
         }
         found
     }
@@ -442,24 +339,13 @@ impl Reader {
 
 /// `clearance_at_zero_pressure (c0)`, optional ones in brackets.
 fn described(name: Name) -> String {
-    let both = if name.long == name.short {
-        name.long.to_owned()
-    } else {
-        format!("{} ({})", name.long, name.short)
-    };
-    if name.required {
-        both
-    } else {
-        format!("[{both}]")
-    }
+    let both = if name.long == name.short { name.long.to_owned() } else { format!("{} ({})", name.long, name.short) };
+    if name.required { both } else { format!("[{both}]") }
 }
 
 /// Lower case without `-`, `_` and blanks.
 fn plain(text: &str) -> String {
-    text.chars()
-        .filter(|c| !matches!(c, '-' | '_' | ' '))
-        .flat_map(char::to_lowercase)
-        .collect()
+    text.chars().filter(|c| !matches!(c, '-' | '_' | ' ')).flat_map(char::to_lowercase).collect()
 }
 
 #[cfg(test)]
@@ -468,30 +354,19 @@ mod tests {
     use crate::law::PressureLaw;
 
     fn errors(kind: &str, pairs: &[(&str, &str)]) -> String {
-        LawSpec::read(kind, pairs)
-            .expect_err("this specification is wrong")
-            .to_string()
+        LawSpec::read(kind, pairs).expect_err("this specification is wrong").to_string()
     }
 
     #[test]
     fn long_and_short_names_mean_the_same() {
-        let long = [
-            ("clearance_at_zero_pressure", "0.01"),
-            ("Pressure-At-Zero-Clearance", " 5 "),
-        ];
+        let long = [("clearance_at_zero_pressure", "0.01"), ("Pressure-At-Zero-Clearance", " 5 ")];
         let short = [("c0", "1e-2"), ("P0", "5.")];
         let law = LawSpec::read("Exponential", &long).unwrap();
         assert_eq!(law, LawSpec::read("EXPONENTIAL", &short).unwrap());
         assert_eq!(law.evaluate(0.0).pressure, 5.0);
         let calculix = LawSpec::read("calculix_exponential", &short).unwrap();
         assert_eq!(calculix.evaluate(0.0).pressure, 5.0);
-        assert_eq!(
-            LawSpec::read("linear", &[("k", "250")])
-                .unwrap()
-                .evaluate(2.0)
-                .pressure,
-            500.0
-        );
+        assert_eq!(LawSpec::read("linear", &[("k", "250")]).unwrap().evaluate(2.0).pressure, 500.0);
     }
 
     #[test]
@@ -503,56 +378,24 @@ mod tests {
     #[test]
     fn a_stiffness_limit_means_explicit_unless_standard_is_asked_for() {
         let pairs = [("c0", "0.01"), ("p0", "5"), ("kmax", "2e4")];
-        assert_eq!(
-            LawSpec::parse("exponential", &pairs).unwrap().procedure,
-            LawProcedure::Explicit
-        );
+        assert_eq!(LawSpec::parse("exponential", &pairs).unwrap().procedure, LawProcedure::Explicit);
         let mut standard = pairs.to_vec();
         standard.push(("procedure", "standard"));
-        assert!(
-            errors("exponential", &standard)
-                .contains("stiffness_max belongs to procedure=explicit")
-        );
+        assert!(errors("exponential", &standard).contains("stiffness_max belongs to procedure=explicit"));
     }
 
     #[test]
     fn separation_follows_the_manual() {
-        let explicit = [
-            ("k", "250"),
-            ("separation", "PREVENTED"),
-            ("procedure", "explicit"),
-        ];
-        assert_eq!(
-            LawSpec::read("linear", &explicit)
-                .unwrap()
-                .evaluate(-0.02)
-                .pressure,
-            -5.0
-        );
+        let explicit = [("k", "250"), ("separation", "PREVENTED"), ("procedure", "explicit")];
+        assert_eq!(LawSpec::read("linear", &explicit).unwrap().evaluate(-0.02).pressure, -5.0);
         assert!(errors("linear", &explicit[..2]).contains("hard contact only"));
-        let exponential = [
-            ("c0", "1"),
-            ("p0", "1"),
-            ("separation", "prevented"),
-            ("procedure", "explicit"),
-        ];
-        assert!(
-            errors("exponential", &exponential)
-                .contains("cannot be combined with an exponential law")
-        );
+        let exponential = [("c0", "1"), ("p0", "1"), ("separation", "prevented"), ("procedure", "explicit")];
+        assert!(errors("exponential", &exponential).contains("cannot be combined with an exponential law"));
     }
 
     #[test]
     fn every_fault_is_reported_at_once() {
-        let text = errors(
-            "exponential",
-            &[
-                ("c0", "abc"),
-                ("q", "1"),
-                ("separation", "maybe"),
-                ("c0", "2"),
-            ],
-        );
+        let text = errors("exponential", &[("c0", "abc"), ("q", "1"), ("separation", "maybe"), ("c0", "2")]);
         for part in [
             "\"abc\" is not a number",
             "no parameter \"q\"",
@@ -566,10 +409,7 @@ mod tests {
         let text = errors("exponential", &[("c0", "-1"), ("p0", "0")]);
         assert_eq!(text.lines().count(), 2, "{text}");
         let text = errors("tabular", &[("table", "0:0,1,x:2")]);
-        assert!(
-            text.contains("table point 2") && text.contains("table point 3"),
-            "{text}"
-        );
+        assert!(text.contains("table point 2") && text.contains("table point 3"), "{text}");
         assert!(errors("tabular", &[("table", "")]).contains("has 0"));
     }
 

@@ -39,18 +39,13 @@ impl Tabular {
     pub fn new(points: &[(f64, f64)]) -> Result<Self, LawError> {
         match violations(points).into_iter().next() {
             Some(error) => Err(error),
-            None => Ok(Self {
-                segments: segments(points),
-            }),
+            None => Ok(Self { segments: segments(points) }),
         }
     }
 
     /// The points (pressure, overclosure).
     pub fn points(&self) -> Vec<(f64, f64)> {
-        self.segments
-            .iter()
-            .map(|s| (s.pressure, s.overclosure))
-            .collect()
+        self.segments.iter().map(|s| (s.pressure, s.overclosure)).collect()
     }
 
     /// Overclosure at which pressure begins [length].
@@ -69,17 +64,10 @@ impl PressureLaw for Tabular {
         if overclosure <= self.onset() {
             return LawPoint::default();
         }
-        let right = self
-            .segments
-            .partition_point(|s| s.overclosure <= overclosure);
+        let right = self.segments.partition_point(|s| s.overclosure <= overclosure);
         // NaN compares below nothing, so it finds no segment; the first one turns it into NaN.
         let s = &self.segments[right.max(1) - 1];
-        straight(
-            saturate(overclosure - s.overclosure),
-            s.pressure,
-            s.stiffness,
-            s.energy,
-        )
+        straight(saturate(overclosure - s.overclosure), s.pressure, s.stiffness, s.energy)
     }
 
     fn kinks(&self) -> Vec<f64> {
@@ -101,23 +89,11 @@ fn segments(points: &[(f64, f64)]) -> Vec<Segment> {
     let mut energy = 0.0;
     for pair in points.windows(2) {
         let [(p0, h0), (p1, h1)] = [pair[0], pair[1]];
-        segments.push(Segment {
-            overclosure: h0,
-            pressure: p0,
-            stiffness: slope(pair[0], pair[1]),
-            energy,
-        });
+        segments.push(Segment { overclosure: h0, pressure: p0, stiffness: slope(pair[0], pair[1]), energy });
         energy = saturate(energy + (0.5 * p0 + 0.5 * p1) * (h1 - h0));
     }
-    if let (Some(&(pressure, overclosure)), Some(&Segment { stiffness, .. })) =
-        (points.last(), segments.last())
-    {
-        segments.push(Segment {
-            overclosure,
-            pressure,
-            stiffness,
-            energy,
-        });
+    if let (Some(&(pressure, overclosure)), Some(&Segment { stiffness, .. })) = (points.last(), segments.last()) {
+        segments.push(Segment { overclosure, pressure, stiffness, energy });
     }
     segments
 }
@@ -130,18 +106,12 @@ fn slope(from: (f64, f64), to: (f64, f64)) -> f64 {
 pub(super) fn violations(points: &[(f64, f64)]) -> Vec<LawError> {
     let mut findings = Vec::new();
     if points.len() < 2 {
-        findings.push(LawError::TooFewPoints {
-            count: points.len(),
-        });
+        findings.push(LawError::TooFewPoints { count: points.len() });
     }
     for (row, &(pressure, overclosure)) in (1..).zip(points) {
         for (quantity, value) in [("pressure", pressure), ("overclosure", overclosure)] {
             if !value.is_finite() {
-                findings.push(LawError::PointNotFinite {
-                    row,
-                    quantity,
-                    value,
-                });
+                findings.push(LawError::PointNotFinite { row, quantity, value });
             }
         }
     }
@@ -151,33 +121,18 @@ pub(super) fn violations(points: &[(f64, f64)]) -> Vec<LawError> {
     if let Some(&(pressure, overclosure)) = points.first()
         && pressure != 0.0
     {
-        findings.push(LawError::FirstPressureNotZero {
-            pressure,
-            overclosure,
-        });
+        findings.push(LawError::FirstPressureNotZero { pressure, overclosure });
     }
     for (row, pair) in (2..).zip(points.windows(2)) {
         let before = findings.len();
-        for (quantity, value, previous) in [
-            ("pressure", pair[1].0, pair[0].0),
-            ("overclosure", pair[1].1, pair[0].1),
-        ] {
+        for (quantity, value, previous) in [("pressure", pair[1].0, pair[0].0), ("overclosure", pair[1].1, pair[0].1)] {
             if value <= previous {
-                findings.push(LawError::NotIncreasing {
-                    row,
-                    quantity,
-                    value,
-                    previous,
-                });
+                findings.push(LawError::NotIncreasing { row, quantity, value, previous });
             }
         }
         let value = slope(pair[0], pair[1]);
         if findings.len() == before && !(value.is_finite() && value > 0.0) {
-            findings.push(LawError::OutOfRange {
-                law: "tabular",
-                quantity: "a slope",
-                value,
-            });
+            findings.push(LawError::OutOfRange { law: "tabular", quantity: "a slope", value });
         }
     }
     findings
@@ -199,17 +154,11 @@ mod tests {
 
     #[test]
     fn two_points_from_the_origin_are_the_linear_law_to_the_bit() {
-        let (table, line) = (
-            Tabular::new(&[(0.0, 0.0), (250.0, 1.0)]).unwrap(),
-            Linear::new(250.0).unwrap(),
-        );
+        let (table, line) = (Tabular::new(&[(0.0, 0.0), (250.0, 1.0)]).unwrap(), Linear::new(250.0).unwrap());
         for h in [-1.0, 0.0, 1e-9, 0.3, 1.0, 7.0] {
             let (a, b) = (table.evaluate(h), line.evaluate(h));
             assert_eq!(a.stiffness, b.stiffness, "at {h}");
-            assert!(
-                (a.pressure - b.pressure).abs() <= 1e-15 * b.pressure,
-                "at {h}"
-            );
+            assert!((a.pressure - b.pressure).abs() <= 1e-15 * b.pressure, "at {h}");
             assert!((a.energy - b.energy).abs() <= 2e-15 * b.energy, "at {h}");
         }
     }
@@ -240,37 +189,13 @@ mod tests {
         let findings = violations(&[(1.0, 0.0), (0.5, 0.1), (3.0, 0.1)]);
         assert_eq!(findings.len(), 3, "{findings:?}");
         assert!(matches!(findings[0], LawError::FirstPressureNotZero { .. }));
-        assert!(matches!(
-            findings[1],
-            LawError::NotIncreasing {
-                row: 2,
-                quantity: "pressure",
-                ..
-            }
-        ));
-        assert!(matches!(
-            findings[2],
-            LawError::NotIncreasing {
-                row: 3,
-                quantity: "overclosure",
-                ..
-            }
-        ));
-        assert!(matches!(
-            violations(&[(0.0, 0.0)])[..],
-            [LawError::TooFewPoints { count: 1 }]
-        ));
+        assert!(matches!(findings[1], LawError::NotIncreasing { row: 2, quantity: "pressure", .. }));
+        assert!(matches!(findings[2], LawError::NotIncreasing { row: 3, quantity: "overclosure", .. }));
+        assert!(matches!(violations(&[(0.0, 0.0)])[..], [LawError::TooFewPoints { count: 1 }]));
         assert!(matches!(
             violations(&[(0.0, 0.0), (f64::NAN, 1.0)])[..],
-            [LawError::PointNotFinite {
-                row: 2,
-                quantity: "pressure",
-                ..
-            }]
+            [LawError::PointNotFinite { row: 2, quantity: "pressure", .. }]
         ));
-        assert!(matches!(
-            violations(&[(0.0, 0.0), (1e308, 1e-308)])[..],
-            [LawError::OutOfRange { .. }]
-        ));
+        assert!(matches!(violations(&[(0.0, 0.0), (1e308, 1e-308)])[..], [LawError::OutOfRange { .. }]));
     }
 }
