@@ -27,3 +27,6 @@ mod contact;
 mod element;
 mod procedure;
 mod solve;
+
+#[cfg(test)]
+mod column_tests;

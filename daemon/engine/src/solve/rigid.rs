@@ -60,14 +60,10 @@ pub fn free_motions(mesh: &Mesh, nodes: &[NodeId], prescribed: impl Fn(NodeId, u
         for v in kernel {
             let (t, w) = (&v[..3], &v[3..]);
             if w.iter().map(|x| x * x).sum::<f64>() > 1e-12 {
+                let through: [f64; 3] = std::array::from_fn(|i| round(centroid[i] + size * axis_point(t, w, i), size));
                 words.push(format!(
                     "rotation about the direction ({:.3}, {:.3}, {:.3}) through ({:.4e}, {:.4e}, {:.4e})",
-                    w[0],
-                    w[1],
-                    w[2],
-                    centroid[0] + size * axis_point(t, w, 0),
-                    centroid[1] + size * axis_point(t, w, 1),
-                    centroid[2] + size * axis_point(t, w, 2)
+                    w[0], w[1], w[2], through[0], through[1], through[2]
                 ));
             } else {
                 words.push(format!("translation along ({:.3}, {:.3}, {:.3})", t[0], t[1], t[2]));
@@ -75,6 +71,11 @@ pub fn free_motions(mesh: &Mesh, nodes: &[NodeId], prescribed: impl Fn(NodeId, u
         }
     }
     words
+}
+
+/// Zero instead of a coordinate that is rounding against the size of the body.
+fn round(coordinate: f64, size: f64) -> f64 {
+    if coordinate.abs() < 1e-9 * size { 0.0 } else { coordinate }
 }
 
 /// Point of the axis of a motion nearest to the centroid: `ω x t / ω²`.
