@@ -1,0 +1,117 @@
+//! Model part and steps: which card stands where, and whether it may.
+
+use super::super::card::Card;
+use super::super::keywords::{Effect, Placement};
+use super::super::report::{At, Report};
+
+/// Cards by the part of the deck that they stand in.
+#[derive(Default)]
+pub struct Layout<'d> {
+    /// Before the first `*STEP`.
+    pub model: Vec<&'d Card>,
+    /// Steps in order.
+    pub steps: Vec<StepCards<'d>>,
+    /// All cards, in order.
+    pub all: &'d [Card],
+}
+
+/// Cards of a step.
+pub struct StepCards<'d> {
+    /// `*STEP`.
+    pub opening: &'d Card,
+    /// What follows up to `*END STEP`.
+    pub cards: Vec<&'d Card>,
+}
+
+const STEP: &str = "*STEP";
+
+/// Sorts the cards of a deck, reports those out of place.
+pub fn arrange<'d>(cards: &'d [Card], report: &mut Report) -> Layout<'d> {
+    let mut layout = Layout { all: cards, ..Layout::default() };
+    let mut open = false;
+    for card in cards {
+        match card.keyword.name {
+            STEP => {
+                if open {
+                    report.error(card.at, STEP, "the step before is not closed", "write *END STEP before this line");
+                }
+                open = true;
+                layout.steps.push(StepCards { opening: card, cards: Vec::new() });
+            }
+            "*END STEP" if !open => {
+                report.error(
+                    card.at,
+                    "*END STEP",
+                    "there is no step to end",
+                    "remove the line, or write *STEP before it",
+                );
+            }
+            "*END STEP" => open = false,
+            _ => layout.place(card, open, report),
+        }
+    }
+    if open {
+        if let Some(step) = layout.steps.last() {
+            let message = "the step is not closed: the deck may have been cut off";
+            report.error(step.opening.at, STEP, message, "write *END STEP behind the step");
+        }
+    }
+    if layout.steps.is_empty() {
+        let (message, remedy) = if cards.is_empty() {
+            ("the deck is empty", "give a deck with nodes, elements and a step")
+        } else {
+            (
+                "the deck has no step, so there is nothing to solve; it may have been cut off",
+                "add *STEP, *STATIC, loads and *END STEP",
+            )
+        };
+        report.error(At::DECK, "", message, remedy);
+    }
+    layout
+}
+
+impl<'d> Layout<'d> {
+    fn place(&mut self, card: &'d Card, in_step: bool, report: &mut Report) {
+        let name = card.keyword.name;
+        if !card.keyword.is_read() {
+            // Reported already; kept in steps because a refused procedure explains a missing one.
+            if let (true, Some(step)) = (in_step, self.steps.last_mut()) {
+                step.cards.push(card);
+            }
+            return;
+        }
+        let model_only =
+            matches!(card.keyword.placement, Placement::Model | Placement::Material | Placement::Interaction);
+        if in_step {
+            if model_only {
+                return report.error(
+                    card.at,
+                    name,
+                    "the keyword stands within a step",
+                    "move it before the first *STEP",
+                );
+            }
+            if let Some(step) = self.steps.last_mut() {
+                step.cards.push(card);
+            }
+        } else if card.keyword.placement == Placement::Step {
+            report.error(card.at, name, "the keyword stands outside a step", "move it between *STEP and *END STEP");
+        } else if !self.steps.is_empty() && (model_only || name == "*BOUNDARY") {
+            report.error(
+                card.at,
+                name,
+                "the keyword stands behind a step",
+                "move it before the first *STEP, or into a step",
+            );
+        } else {
+            self.model.push(card);
+        }
+    }
+}
+
+impl StepCards<'_> {
+    /// Whether the step has a procedure that was refused.
+    pub fn has_refused_procedure(&self) -> bool {
+        self.cards.iter().any(|card| matches!(card.keyword.effect, Effect::Refused(_)))
+    }
+}

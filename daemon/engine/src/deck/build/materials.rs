@@ -1,0 +1,258 @@
+//! `*MATERIAL`, `*ELASTIC`, `*DENSITY`, `*SOLID SECTION` and `*AMPLITUDE`.
+
+use crate::model::{Amplitude, AmplitudeClock, Material, MaterialId, SetId, SolidSection};
+
+use super::super::card::{Body, Card, DataLine, Row};
+use super::super::keywords::Placement;
+use super::super::report::{At, Report, excerpt};
+use super::Builder;
+use super::layout::Layout;
+
+const MATERIAL: &str = "*MATERIAL";
+const SECTION: &str = "*SOLID SECTION";
+const AMPLITUDE: &str = "*AMPLITUDE";
+
+/// Data lines of a card.
+pub fn lines(card: &Card) -> &[DataLine] {
+    match &card.body {
+        Body::Lines(lines) => lines,
+        _ => &[],
+    }
+}
+
+/// The only data line of a card; none or more are reported.
+#[track_caller]
+pub fn single_row<'c>(card: &'c Card, what: &str, report: &mut Report) -> Option<Row<'c>> {
+    let lines = lines(card);
+    let name = card.keyword.name;
+    if let Some(second) = lines.get(1) {
+        report.error(second.at, name, "a second data line is not read here", format!("write one line: {what}"));
+    }
+    if lines.is_empty() {
+        report.error(card.at, name, "the data line is missing", format!("write one line: {what}"));
+    }
+    lines.first().map(|line| line.row(name))
+}
+
+/// A material that is being read.
+struct Draft {
+    name: String,
+    at: At,
+    /// Modulus and ratio; the inner value is missing when they were given but bad.
+    elastic: Option<Option<(f64, f64)>>,
+    density: Option<f64>,
+}
+
+impl Builder<'_> {
+    pub(super) fn build_materials(&mut self, layout: &Layout<'_>) {
+        let mut drafts: Vec<Draft> = Vec::new();
+        let mut open = false;
+        for card in &layout.model {
+            match card.keyword.name {
+                MATERIAL => {
+                    open = false;
+                    let Some(name) = card.parameters.value("NAME") else { continue };
+                    if self.materials.enter(name).1 {
+                        drafts.push(Draft { name: name.into(), at: card.at, elastic: None, density: None });
+                        open = true;
+                    } else {
+                        self.report.error(
+                            card.at,
+                            MATERIAL,
+                            format!("material {name} is defined twice"),
+                            "rename or remove one",
+                        );
+                    }
+                }
+                name if card.keyword.placement == Placement::Material => match drafts.last_mut().filter(|_| open) {
+                    Some(draft) => draft.add(card, self.report),
+                    None => self.report.error(
+                        card.at,
+                        name,
+                        "no material is being defined here",
+                        "write it under *MATERIAL",
+                    ),
+                },
+                _ => open = false,
+            }
+        }
+        for (position, draft) in (0..).zip(drafts) {
+            let complete = draft.elastic.flatten();
+            if draft.elastic.is_none() {
+                let message = format!("material {} has no *ELASTIC", draft.name);
+                self.report.error(draft.at, MATERIAL, message, "add *ELASTIC with Young's modulus and Poisson's ratio");
+            }
+            if complete.is_none() {
+                self.materials.mark_faulty(position);
+            }
+            let (youngs_modulus, poissons_ratio) = complete.unwrap_or((1.0, 0.0));
+            self.model.materials.push(Material {
+                name: draft.name,
+                youngs_modulus,
+                poissons_ratio,
+                density: draft.density,
+            });
+        }
+    }
+
+    pub(super) fn build_sections(&mut self, layout: &Layout<'_>) {
+        let mut owner: Vec<Option<(MaterialId, At)>> = vec![None; self.model.mesh.elements.len()];
+        let mut sound = true;
+        for card in layout.model.iter().filter(|card| card.keyword.name == SECTION) {
+            let (Some(set), Some(material)) = (card.parameters.value("ELSET"), card.parameters.value("MATERIAL"))
+            else {
+                sound = false;
+                continue;
+            };
+            let set = self.element_sets.refer(set, card.at, SECTION, self.report);
+            // A faulty material is still the material of its elements.
+            let known = self.materials.find(material).filter(|&position| self.materials.is_faulty(position));
+            let material = known.or_else(|| self.materials.refer(material, card.at, SECTION, self.report));
+            if let Some(position) = material {
+                self.materials.mark_used(position);
+            }
+            let (Some(set), Some(material)) = (set, material) else {
+                sound = false;
+                continue;
+            };
+            let material = MaterialId(material);
+            let section = SolidSection { element_set: SetId(set), material };
+            let elements = &self.model.mesh.element_sets[set as usize];
+            if elements.elements.is_empty() {
+                let message = format!("element set {} is empty", elements.name);
+                self.report.warning(card.at, SECTION, message, "the section has no effect");
+            }
+            for element in &elements.elements {
+                match owner[element.index()] {
+                    Some((other, _)) if other != material => {
+                        let label = self.model.mesh.element_labels[element.index()];
+                        let message =
+                            format!("element {label} is of material {} already", self.materials.written(other.0));
+                        self.report.error(card.at, SECTION, message, "give each element one section");
+                    }
+                    Some(_) => {}
+                    None => owner[element.index()] = Some((material, card.at)),
+                }
+            }
+            self.model.sections.push(section);
+        }
+        let bare = |(position, owner): (usize, &Option<_>)| owner.is_none().then_some(position);
+        let without: Vec<usize> = owner.iter().enumerate().filter_map(bare).collect();
+        if let (Some(&first), true) = (without.first(), sound) {
+            let label = self.model.mesh.element_labels[first];
+            let message = format!("{} elements have no section, the first is element {label}", without.len());
+            self.report.error(
+                self.element_at[first],
+                "*ELEMENT",
+                message,
+                "give their set a *SOLID SECTION with a material",
+            );
+        }
+        self.model.mesh.element_materials =
+            owner.iter().map(|owner| owner.map_or(MaterialId(0), |(material, _)| material)).collect();
+    }
+
+    pub(super) fn build_amplitudes(&mut self, layout: &Layout<'_>) {
+        for card in layout.all.iter().filter(|card| card.keyword.name == AMPLITUDE) {
+            let Some(name) = card.parameters.value("NAME") else { continue };
+            let (position, is_new) = self.amplitudes.enter(name);
+            if !is_new {
+                self.report.error(
+                    card.at,
+                    AMPLITUDE,
+                    format!("amplitude {name} is defined twice"),
+                    "rename or remove one",
+                );
+                continue;
+            }
+            let points = amplitude_points(card, self.report);
+            let points = points.filter(|_| !card.faulty).unwrap_or_else(|| {
+                self.amplitudes.mark_faulty(position);
+                Vec::new()
+            });
+            let clock = match card.parameters.word("TIME").as_str() {
+                "TOTALTIME" | "TOTAL" => AmplitudeClock::Total,
+                _ => AmplitudeClock::Step,
+            };
+            self.model.amplitudes.push(Amplitude { name: name.to_string(), clock, points });
+        }
+    }
+}
+
+impl Draft {
+    fn add(&mut self, card: &Card, report: &mut Report) {
+        let name = card.keyword.name;
+        if name == "*DENSITY" {
+            let what = "density";
+            let value = single_row(card, what, report).and_then(|row| row.real(0, "density", None, report));
+            match value {
+                Some(density) if density > 0.0 => self.density = Some(density),
+                Some(density) => report.error(
+                    card.at,
+                    name,
+                    format!("density {density} is not positive"),
+                    "give the mass per volume",
+                ),
+                None => {}
+            }
+            return;
+        }
+        if self.elastic.is_some() {
+            report.error(card.at, name, format!("material {} has *ELASTIC already", self.name), "keep one of them");
+        }
+        self.elastic = Some(None);
+        if card.faulty {
+            return;
+        }
+        let Some(row) = single_row(card, "Young's modulus, Poisson's ratio", report) else { return };
+        let modulus = row.real(0, "Young's modulus", None, report);
+        let ratio = row.real(1, "Poisson's ratio", None, report);
+        let (Some(modulus), Some(ratio)) = (modulus, ratio) else { return };
+        if modulus <= 0.0 {
+            report.error(row.at, name, format!("Young's modulus {modulus} is not positive"), "give a positive modulus");
+        }
+        if ratio <= -1.0 || ratio >= 0.5 {
+            let message = format!("Poisson's ratio {ratio} is not between -1 and 0.5");
+            report.error(row.at, name, message, "give a ratio above -1 and below 0.5");
+        }
+        self.elastic = Some(Some((modulus, ratio)));
+    }
+}
+
+fn amplitude_points(card: &Card, report: &mut Report) -> Option<Vec<(f64, f64)>> {
+    if let Some(smooth) = card.parameters.value("SMOOTH") {
+        if super::super::lex::real(smooth.as_bytes()) != Ok(0.0) {
+            let message = format!("SMOOTH={} is not supported and would change the answer", excerpt(smooth.as_bytes()));
+            report.error(card.at, AMPLITUDE, message, "leave it out: the curve is straight between its points");
+            return None;
+        }
+    }
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for line in lines(card) {
+        let mut row = line.row(AMPLITUDE);
+        while row.fields.last().is_some_and(|field| field.is_empty()) {
+            row.fields.pop();
+        }
+        if row.fields.len() % 2 != 0 {
+            report.error(row.at, AMPLITUDE, "the last time has no value", "write pairs: time, value, time, value, …");
+            return None;
+        }
+        for i in (0..row.fields.len()).step_by(2) {
+            let time = row.real(i, "time", None, report)?;
+            let value = row.real(i + 1, "value", None, report)?;
+            if let Some(&(before, _)) = points.last() {
+                if time <= before {
+                    let message = format!("time {time} does not exceed the time before, {before}");
+                    report.error(row.at, AMPLITUDE, message, "times must increase from pair to pair");
+                    return None;
+                }
+            }
+            points.push((time, value));
+        }
+    }
+    if points.is_empty() {
+        report.error(card.at, AMPLITUDE, "the curve has no points", "write pairs: time, value, time, value, …");
+        return None;
+    }
+    Some(points)
+}

@@ -1,0 +1,203 @@
+//! Nodes and elements: labels to positions, repetitions, undefined nodes, inverted bricks.
+
+use rustc_hash::FxHashMap;
+
+use crate::model::{Dialect, Element, ElementId, ElementKind, Mesh, NodeId};
+
+use super::super::card::{Deck, ElementTable, NodeTable};
+use super::super::report::{At, Report};
+use super::jacobian::jacobian_min;
+use super::names::Labels;
+
+const NODE: &str = "*NODE";
+const ELEMENT: &str = "*ELEMENT";
+
+/// Nodes and elements, and how to find them.
+pub struct MeshParts {
+    /// The mesh without sets and surfaces.
+    pub mesh: Mesh,
+    /// Node positions.
+    pub nodes: Labels,
+    /// Element positions.
+    pub elements: Labels,
+    /// Position in the mesh of each row of `*NODE` lines.
+    pub node_rows: Rows,
+    /// Position in the mesh of each row of `*ELEMENT` lines.
+    pub element_rows: Rows,
+    /// Lines of the elements.
+    pub element_at: Vec<At>,
+}
+
+/// Positions of rows: the same, unless labels are repeated or elements refused.
+pub struct Rows(Option<Vec<u32>>);
+
+/// Position of a row that was refused.
+const REFUSED: u32 = u32::MAX;
+
+impl Rows {
+    /// Position of a row, unless it was refused.
+    pub fn position(&self, row: u32) -> Option<u32> {
+        match &self.0 {
+            None => Some(row),
+            Some(positions) => positions.get(row as usize).copied().filter(|&position| position != REFUSED),
+        }
+    }
+}
+
+/// Takes nodes and elements out of the deck.
+pub fn build_mesh(deck: &mut Deck, dialect: Dialect, report: &mut Report) -> MeshParts {
+    let mut mesh = Mesh::default();
+    let node_rows = take_nodes(std::mem::take(&mut deck.nodes), &mut mesh, report);
+    let nodes = Labels::of(&mesh.node_labels);
+    let (element_rows, element_at) =
+        take_elements(std::mem::take(&mut deck.elements), &nodes, deck, dialect, &mut mesh, report);
+    let elements = Labels::of(&mesh.element_labels);
+    mesh.node_of_label = map_labels(&mesh.node_labels, NodeId);
+    mesh.element_of_label = map_labels(&mesh.element_labels, ElementId);
+    if !deck.incomplete {
+        if mesh.nodes.is_empty() && deck.refused_nodes.is_empty() {
+            report.error(At::DECK, NODE, "the deck has no nodes", "add *NODE with the nodes of the mesh");
+        }
+        if mesh.elements.is_empty() && deck.refused_elements.is_empty() {
+            report.error(
+                At::DECK,
+                ELEMENT,
+                "the deck has no elements",
+                "add *ELEMENT, TYPE=C3D8 with the elements of the mesh",
+            );
+        }
+    }
+    MeshParts { mesh, nodes, elements, node_rows, element_rows, element_at }
+}
+
+fn map_labels<I>(labels: &[u32], id: impl Fn(u32) -> I) -> FxHashMap<u32, I> {
+    let mut map = FxHashMap::with_capacity_and_hasher(labels.len(), Default::default());
+    map.extend((0..).zip(labels).map(|(position, &label)| (label, id(position))));
+    map
+}
+
+fn take_nodes(table: NodeTable, mesh: &mut Mesh, report: &mut Report) -> Rows {
+    let first = Labels::of(&table.labels);
+    let NodeTable { mut labels, mut coordinates, at } = table;
+    let mut kept = 0;
+    let mut positions = None::<Vec<u32>>;
+    for row in 0..labels.len() {
+        let earlier = first.get(labels[row]).unwrap_or(row as u32) as usize;
+        if earlier == row {
+            labels[kept] = labels[row];
+            coordinates[kept] = coordinates[row];
+            if let Some(positions) = &mut positions {
+                positions.push(kept as u32);
+            }
+            kept += 1;
+            continue;
+        }
+        let positions = positions.get_or_insert_with(|| (0..row as u32).collect());
+        let position = positions[earlier];
+        positions.push(position);
+        if coordinates[position as usize] == coordinates[row] {
+            let message = format!("node {} is given twice, with the same coordinates", labels[row]);
+            report.warning(at[row], NODE, message, "remove one of the lines");
+        } else {
+            let [x, y, z] = coordinates[position as usize];
+            let message = format!("node {} is given twice, first at ({x}, {y}, {z})", labels[row]);
+            report.error(at[row], NODE, message, "give one of the nodes another number, or remove it");
+        }
+    }
+    labels.truncate(kept);
+    coordinates.truncate(kept);
+    mesh.node_labels = labels;
+    mesh.nodes = coordinates;
+    Rows(positions)
+}
+
+fn take_elements(
+    table: ElementTable,
+    node_index: &Labels,
+    deck: &mut Deck,
+    dialect: Dialect,
+    mesh: &mut Mesh,
+    report: &mut Report,
+) -> (Rows, Vec<At>) {
+    let kind = match dialect {
+        Dialect::Abaqus => ElementKind::C3D8,
+        Dialect::Calculix => ElementKind::C3D8Full,
+    };
+    let first = Labels::of(&table.labels);
+    let mut positions = Vec::with_capacity(table.labels.len());
+    let mut kept_at = Vec::with_capacity(table.labels.len());
+    mesh.elements.reserve_exact(table.labels.len());
+    mesh.element_labels.reserve_exact(table.labels.len());
+    for (row, (&label, corners)) in table.labels.iter().zip(&table.nodes).enumerate() {
+        let at = table.at[row];
+        let earlier = first.get(label).unwrap_or(row as u32) as usize;
+        if earlier < row {
+            report.error(
+                at,
+                ELEMENT,
+                format!("element {label} is given twice"),
+                "give one of them another number, or remove it",
+            );
+            positions.push(positions[earlier]);
+            continue;
+        }
+        match resolve_corners(label, corners, at, node_index, deck, mesh, report) {
+            Some(nodes) => {
+                positions.push(mesh.elements.len() as u32);
+                mesh.elements.push(Element { kind, nodes });
+                mesh.element_labels.push(label);
+                kept_at.push(at);
+            }
+            None => {
+                positions.push(REFUSED);
+                deck.refused_elements.insert(label);
+            }
+        }
+    }
+    let unchanged = mesh.elements.len() == positions.len();
+    (Rows((!unchanged).then_some(positions)), kept_at)
+}
+
+fn resolve_corners(
+    label: u32,
+    corners: &[u32; 8],
+    at: At,
+    node_index: &Labels,
+    deck: &Deck,
+    mesh: &Mesh,
+    report: &mut Report,
+) -> Option<[NodeId; 8]> {
+    let mut nodes = [NodeId(0); 8];
+    for (node, &corner) in nodes.iter_mut().zip(corners) {
+        match node_index.get(corner) {
+            Some(position) => *node = NodeId(position),
+            None => {
+                if !deck.incomplete && !deck.refused_nodes.contains(&corner) {
+                    let message = format!("element {label} uses node {corner}, which is not defined");
+                    report.error(at, ELEMENT, message, "define the node, or correct the number");
+                }
+                return None;
+            }
+        }
+    }
+    for i in 1..nodes.len() {
+        if nodes[..i].contains(&nodes[i]) {
+            let message = format!("element {label} uses node {} twice", corners[i]);
+            report.error(at, ELEMENT, message, "collapsed bricks are not solved: give eight different nodes");
+            return None;
+        }
+    }
+    let jacobian = jacobian_min(&nodes.map(|node| mesh.nodes[node.index()]));
+    if jacobian <= 0.0 {
+        let message =
+            format!("element {label} is inverted or distorted: its Jacobian is {jacobian:.3e} at an integration point");
+        report.error(
+            at,
+            ELEMENT,
+            message,
+            "list the bottom face anticlockwise seen from the top face, then the top face; check the coordinates",
+        );
+        return None;
+    }
+    Some(nodes)
+}

@@ -1,0 +1,143 @@
+//! Second pass: cards to a model. References are followed in any direction, so the order of definitions does not matter.
+
+mod contact;
+mod jacobian;
+mod layout;
+mod loads;
+mod materials;
+mod mesh;
+mod names;
+mod output;
+mod prescribed;
+mod regions;
+mod sets;
+mod steps;
+mod surfaces;
+
+use crate::model::{Boundary, Dialect, Model};
+
+use super::card::Deck;
+use super::report::{At, Report};
+use super::source::SourceMap;
+use layout::Layout;
+use names::{Labels, Names};
+use prescribed::Part;
+use rustc_hash::FxHashSet;
+
+/// What the passes share.
+struct Builder<'r> {
+    model: Model,
+    report: &'r mut Report,
+    map: &'r SourceMap,
+    node_index: Labels,
+    element_index: Labels,
+    node_sets: Names,
+    element_sets: Names,
+    surfaces: Names,
+    materials: Names,
+    interactions: Names,
+    amplitudes: Names,
+    /// Labels about which enough has been said.
+    refused_nodes: FxHashSet<u32>,
+    refused_elements: FxHashSet<u32>,
+    /// Lines of the elements.
+    element_at: Vec<At>,
+    /// Lines of the boundaries of each step.
+    step_lines: Vec<Vec<At>>,
+    /// Lines of the loads of each step.
+    load_lines: Vec<Vec<At>>,
+}
+
+/// Builds the model. It is to be used only when the report has no errors.
+pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Report) -> Model {
+    let parts = mesh::build_mesh(&mut deck, dialect, report);
+    let Deck { heading, cards, refused_nodes, refused_elements, incomplete, .. } = deck;
+    let layout = layout::arrange(&cards, report);
+    let mut builder = Builder {
+        model: Model { heading, dialect, mesh: parts.mesh, ..Model::default() },
+        report,
+        map,
+        node_index: parts.nodes,
+        element_index: parts.elements,
+        node_sets: Names::new("node set"),
+        element_sets: Names::new("element set"),
+        surfaces: Names::new("surface"),
+        materials: Names::new("material"),
+        interactions: Names::new("surface interaction"),
+        amplitudes: Names::new("amplitude"),
+        refused_nodes,
+        refused_elements,
+        element_at: parts.element_at,
+        step_lines: Vec::new(),
+        load_lines: Vec::new(),
+    };
+    if incomplete {
+        // Names and labels may stand in what was not read.
+        return builder.model;
+    }
+    builder.build_sets(&layout, &parts.node_rows, &parts.element_rows);
+    builder.build_surfaces(&layout);
+    builder.build_materials(&layout);
+    builder.build_sections(&layout);
+    builder.build_interactions(&layout);
+    builder.build_pairs(&layout);
+    builder.build_amplitudes(&layout);
+    builder.build_initial_boundaries(&layout);
+    builder.build_steps(&layout);
+    builder.check_prescribed(&layout);
+    builder.check_loads();
+    builder.check_unused(&layout);
+    builder.model
+}
+
+impl Builder<'_> {
+    fn build_initial_boundaries(&mut self, layout: &Layout<'_>) {
+        let mut boundaries: Vec<Boundary> = Vec::new();
+        for card in layout.model.iter().filter(|card| card.keyword.name == "*BOUNDARY") {
+            boundaries.extend(self.boundary_card(card, Part::Model).into_iter().map(|(_, boundary)| boundary));
+        }
+        self.model.initial_boundaries = boundaries;
+    }
+
+    /// Definitions that nothing uses are often misspelt references.
+    fn check_unused(&mut self, layout: &Layout<'_>) {
+        let kinds = [
+            (&self.materials, "*MATERIAL", "material"),
+            (&self.interactions, "*SURFACE INTERACTION", "surface interaction"),
+            (&self.amplitudes, "*AMPLITUDE", "amplitude"),
+            (&self.surfaces, "*SURFACE", "surface"),
+        ];
+        for (names, keyword, kind) in kinds {
+            for position in names.unused() {
+                let name = names.written(position);
+                let is_it = |value: Option<&str>| value.is_some_and(|value| names.find(value) == Some(position));
+                let card =
+                    layout.all.iter().find(|card| card.keyword.name == keyword && is_it(card.parameters.value("NAME")));
+                let at = card.map_or(At::DECK, |card| card.at);
+                self.report.warning(
+                    at,
+                    keyword,
+                    format!("{kind} {name} is not used"),
+                    "check the names that should refer to it",
+                );
+            }
+        }
+        let mut in_element = vec![false; self.model.mesh.nodes.len()];
+        for element in &self.model.mesh.elements {
+            element.nodes.iter().for_each(|node| in_element[node.index()] = true);
+        }
+        let loose: Vec<_> = (in_element.iter().zip(&self.model.mesh.node_labels))
+            .filter(|(used, _)| !**used)
+            .map(|(_, label)| *label)
+            .collect();
+        if let (Some(first), true) = (loose.first(), self.refused_elements.is_empty()) {
+            let message = format!("{} nodes belong to no element, the first is node {first}", loose.len());
+            self.report.warning(
+                At::DECK,
+                "*NODE",
+                message,
+                "they have no stiffness; remove them if they serve no purpose",
+            );
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! `*BOUNDARY`: lines to single directions, and which line prescribes which direction of a node.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+
+use crate::model::{Boundary, Model, NodeId};
+
+use super::super::card::{Card, Row};
+use super::super::lex::{key, looks_numeric};
+use super::super::report::{At, excerpt};
+use super::Builder;
+use super::layout::Layout;
+use super::materials::lines;
+
+const BOUNDARY: &str = "*BOUNDARY";
+
+/// Where a `*BOUNDARY` stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// Before the first step.
+    Model,
+    /// In a step.
+    Step,
+}
+
+/// Named types and their degrees of freedom.
+const NAMED: [(&str, &[u32]); 8] = [
+    ("XSYMM", &[1, 5, 6]),
+    ("YSYMM", &[2, 4, 6]),
+    ("ZSYMM", &[3, 4, 5]),
+    ("XASYMM", &[2, 3, 4]),
+    ("YASYMM", &[1, 3, 5]),
+    ("ZASYMM", &[1, 2, 6]),
+    ("PINNED", &[1, 2, 3]),
+    ("ENCASTRE", &[1, 2, 3, 4, 5, 6]),
+];
+
+impl Builder<'_> {
+    /// Lines of a `*BOUNDARY`, one entry per direction, each with its line.
+    pub(super) fn boundary_card(&mut self, card: &Card, part: Part) -> Vec<(At, Boundary)> {
+        let Ok(mut amplitude) = self.amplitude(card) else { return Vec::new() };
+        if part == Part::Model && amplitude.take().is_some() {
+            self.report.warning(card.at, BOUNDARY, "AMPLITUDE is ignored: values before the first step are 0", "");
+        }
+        if card.faulty {
+            return Vec::new();
+        }
+        let mut boundaries = Vec::new();
+        for line in lines(card) {
+            let row = line.row(BOUNDARY);
+            row.at_most(4, self.report);
+            let region = self.node_region(&row);
+            let directions = self.directions(&row);
+            let magnitude = row.real(3, "magnitude", Some(0.0), self.report);
+            let (Some(region), Some(directions), Some(magnitude)) = (region, directions, magnitude) else { continue };
+            if part == Part::Model && magnitude != 0.0 {
+                let message = format!("value {magnitude} before the first step");
+                self.report.error(
+                    row.at,
+                    BOUNDARY,
+                    message,
+                    "move the line into the step in which the value is reached",
+                );
+                continue;
+            }
+            for direction in directions {
+                let boundary = Boundary {
+                    region: region.region.clone(),
+                    region_name: region.name.clone(),
+                    nodes: region.members.clone(),
+                    direction,
+                    magnitude,
+                    amplitude,
+                    place: self.map.place(row.at),
+                };
+                boundaries.push((row.at, boundary));
+            }
+        }
+        boundaries
+    }
+
+    /// Directions 0..3 that a line names.
+    fn directions(&mut self, row: &Row<'_>) -> Option<Vec<u8>> {
+        let first = row.text(1);
+        if !first.is_empty() && !looks_numeric(first.as_bytes()) {
+            let word = key(first);
+            let Some((_, dofs)) = NAMED.iter().find(|(name, _)| *name == word) else {
+                let names: Vec<_> = NAMED.iter().map(|(name, _)| *name).collect();
+                let message = format!("there is no boundary type {}", excerpt(first.as_bytes()));
+                self.report.error(
+                    row.at,
+                    BOUNDARY,
+                    message,
+                    format!("write degrees of freedom 1 to 3, or {}", names.join(", ")),
+                );
+                return None;
+            };
+            return Some(dofs.iter().filter(|&&dof| dof <= 3).map(|&dof| dof as u8 - 1).collect());
+        }
+        let first = row.whole(1, "first degree of freedom", None, self.report)?;
+        let last = row.whole(2, "last degree of freedom", Some(first), self.report)?;
+        if first == 0 || last < first || last > 6 {
+            let message = format!("degrees of freedom {first} to {last} do not exist on solids");
+            self.report.error(row.at, BOUNDARY, message, "write first and last of 1 (x), 2 (y), 3 (z)");
+            return None;
+        }
+        if last > 3 {
+            let message =
+                format!("degrees of freedom {} to {last} are ignored: solids have no rotations", first.max(4));
+            self.report.warning(row.at, BOUNDARY, message, "");
+        }
+        Some((first..=last.min(3)).map(|dof| dof as u8 - 1).collect())
+    }
+
+    /// Checks over all steps: every step prescribes the same directions, and each by one line.
+    pub(super) fn check_prescribed(&mut self, layout: &Layout<'_>) {
+        let mut prescribed = vec![0u8; self.model.mesh.nodes.len()];
+        for boundary in &self.model.initial_boundaries {
+            boundary.nodes.iter().for_each(|node| prescribed[node.index()] |= 1 << boundary.direction);
+        }
+        for (step, cards) in layout.steps.iter().enumerate() {
+            if step >= self.model.steps.len() {
+                break;
+            }
+            self.one_line_per_direction(step);
+            let mut here = vec![0u8; prescribed.len()];
+            for boundary in &self.model.steps[step].boundaries {
+                boundary.nodes.iter().for_each(|node| here[node.index()] |= 1 << boundary.direction);
+            }
+            let card_at = |card: &&&Card| card.keyword.name == BOUNDARY;
+            let at = cards.cards.iter().find(card_at).map_or(cards.opening.at, |card| card.at);
+            let is_new = cards.cards.iter().filter(card_at).any(|card| card.parameters.word("OP") == "NEW");
+            if is_new {
+                let freed = first_of(&prescribed, &here);
+                if let Some((node, direction)) = freed {
+                    let message =
+                        format!("OP=NEW would free degree of freedom {direction} of node {}", self.label(node));
+                    self.report.error(
+                        at,
+                        BOUNDARY,
+                        message,
+                        "a step that frees nodes is not solved: use OP=MOD, or prescribe them again",
+                    );
+                }
+            }
+            let added = first_of(&here, &prescribed).filter(|_| step > 0);
+            if let Some((node, direction)) = added {
+                let message = format!(
+                    "degree of freedom {direction} of node {} is prescribed here for the first time",
+                    self.label(node)
+                );
+                let remedy = "a step that holds further nodes is not solved: prescribe them from the first step on";
+                self.report.error(at, BOUNDARY, message, remedy);
+            }
+            prescribed.iter_mut().zip(&here).for_each(|(before, now)| *before |= now);
+        }
+    }
+
+    fn label(&self, node: usize) -> u32 {
+        self.model.mesh.node_labels[node]
+    }
+
+    /// Takes nodes out of lines that a later line of the step overrides. Two values that differ and are not 0 are an error.
+    fn one_line_per_direction(&mut self, step: usize) {
+        let Model { steps, mesh, .. } = &mut self.model;
+        let boundaries = &mut steps[step].boundaries;
+        let mut line_of: FxHashMap<(NodeId, u8), usize> = FxHashMap::default();
+        // (overridden line, line that counts): number of nodes and the first one.
+        let mut overridden: BTreeMap<(usize, usize), (usize, NodeId)> = BTreeMap::new();
+        let mut lost: Vec<Vec<NodeId>> = vec![Vec::new(); boundaries.len()];
+        for (line, boundary) in boundaries.iter().enumerate() {
+            for &node in &boundary.nodes {
+                if let Some(earlier) = line_of.insert((node, boundary.direction), line) {
+                    overridden.entry((earlier, line)).or_insert((0, node)).0 += 1;
+                    lost[earlier].push(node);
+                }
+            }
+        }
+        for ((earlier, later), (count, node)) in overridden {
+            let (before, now) = (&boundaries[earlier], &boundaries[later]);
+            let at = self.step_lines[step][later];
+            let direction = now.direction + 1;
+            let label = mesh.node_labels[node.index()];
+            let same = before.magnitude == now.magnitude && before.amplitude == now.amplitude;
+            if !same && before.magnitude != 0.0 && now.magnitude != 0.0 {
+                let message = format!(
+                    "degree of freedom {direction} of node {label} is prescribed as {} and as {} in one step",
+                    before.magnitude, now.magnitude
+                );
+                self.report.error(at, BOUNDARY, message, "prescribe it once");
+            } else if before.magnitude != 0.0 || now.magnitude != 0.0 {
+                let message = format!(
+                    "degree of freedom {direction} of {count} nodes, the first is node {label}, is prescribed as {} and again as {}: this line counts",
+                    before.magnitude, now.magnitude
+                );
+                self.report.warning(at, BOUNDARY, message, "prescribe each node once");
+            }
+        }
+        for (boundary, lost) in boundaries.iter_mut().zip(&mut lost) {
+            if !lost.is_empty() {
+                lost.sort_unstable();
+                boundary.nodes.retain(|node| lost.binary_search(node).is_err());
+            }
+        }
+        boundaries.retain(|boundary| !boundary.nodes.is_empty());
+    }
+}
+
+/// First node and degree of freedom (from 1) that is set in `these` and not in `those`.
+fn first_of(these: &[u8], those: &[u8]) -> Option<(usize, u32)> {
+    let differs = |(node, (here, there)): (usize, (&u8, &u8))| {
+        let bits = here & !there;
+        (bits != 0).then(|| (node, bits.trailing_zeros() + 1))
+    };
+    these.iter().zip(those).enumerate().find_map(differs)
+}

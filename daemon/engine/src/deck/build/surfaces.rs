@@ -1,0 +1,120 @@
+//! `*SURFACE`: faces of elements, free faces of element sets, or nodes.
+
+use rustc_hash::FxHashMap;
+
+use crate::model::{ElementFace, ElementId, Mesh, NodeId, Surface, SurfaceKind};
+
+use super::super::card::{Body, Card, Faces, Members};
+use super::Builder;
+use super::layout::Layout;
+
+const SURFACE: &str = "*SURFACE";
+
+impl Builder<'_> {
+    pub(super) fn build_surfaces(&mut self, layout: &Layout<'_>) {
+        for card in layout.all.iter().filter(|card| card.keyword.name == SURFACE) {
+            let Some(name) = card.parameters.value("NAME") else { continue };
+            let (position, is_new) = self.surfaces.enter(name);
+            if !is_new {
+                let message = format!("surface {name} is defined twice");
+                self.report.error(card.at, SURFACE, message, "write all its faces under one *SURFACE, or rename one");
+                continue;
+            }
+            let mut sound = !card.faulty;
+            let kind = match &card.body {
+                Body::Members(members) => SurfaceKind::Nodes(self.node_members(card, members, &mut sound)),
+                Body::Faces(faces) => SurfaceKind::Faces(self.face_members(faces, &mut sound)),
+                _ => SurfaceKind::Faces(Vec::new()),
+            };
+            let empty = match &kind {
+                SurfaceKind::Nodes(nodes) => nodes.is_empty(),
+                SurfaceKind::Faces(faces) => faces.is_empty(),
+            };
+            if empty && sound {
+                self.report.error(
+                    card.at,
+                    SURFACE,
+                    format!("surface {name} is empty"),
+                    "list its faces, or its nodes with TYPE=NODE",
+                );
+                sound = false;
+            }
+            if !sound {
+                self.surfaces.mark_faulty(position);
+            }
+            self.model.mesh.surfaces.push(Surface { name: name.to_string(), kind });
+        }
+    }
+
+    fn node_members(&mut self, card: &Card, members: &Members, sound: &mut bool) -> Vec<NodeId> {
+        let mut nodes = Vec::new();
+        for &(label, at) in &members.labels {
+            match self.node(label, at, card.keyword.name) {
+                Some(node) => nodes.push(node),
+                None => *sound = false,
+            }
+        }
+        for (name, at) in &members.names {
+            match self.node_sets.refer(name, *at, card.keyword.name, self.report) {
+                Some(set) => nodes.extend(&self.model.mesh.node_sets[set as usize].nodes),
+                None => *sound = false,
+            }
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    fn face_members(&mut self, members: &Faces, sound: &mut bool) -> Vec<ElementFace> {
+        let mut faces = Vec::new();
+        // Elements whose free faces are wanted.
+        let mut exposed: Vec<ElementId> = Vec::new();
+        for &(label, face, at) in &members.labels {
+            match self.element(label, at, SURFACE) {
+                Some(element) if face == 0 => exposed.push(element),
+                Some(element) => faces.push(ElementFace { element, face: face - 1 }),
+                None => *sound = false,
+            }
+        }
+        for (name, face, at) in &members.names {
+            let Some(set) = self.element_sets.refer(name, *at, SURFACE, self.report) else {
+                *sound = false;
+                continue;
+            };
+            let elements = &self.model.mesh.element_sets[set as usize].elements;
+            match *face {
+                0 => exposed.extend(elements),
+                face => faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 })),
+            }
+        }
+        if !exposed.is_empty() {
+            faces.extend(free_faces(&self.model.mesh, &exposed));
+        }
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+    }
+}
+
+/// Faces of the elements that no other element of the mesh shares.
+fn free_faces(mesh: &Mesh, elements: &[ElementId]) -> Vec<ElementFace> {
+    let corners = |face: ElementFace| {
+        let mut corners = mesh.face_nodes(face);
+        corners.sort_unstable();
+        corners
+    };
+    let faces_of = |element: ElementId| (0..6).map(move |face| ElementFace { element, face });
+    let mut wanted: FxHashMap<[NodeId; 4], u32> = FxHashMap::default();
+    for &element in elements {
+        wanted.extend(faces_of(element).map(|face| (corners(face), 0)));
+    }
+    for element in (0..mesh.elements.len() as u32).map(ElementId) {
+        for face in faces_of(element) {
+            if let Some(count) = wanted.get_mut(&corners(face)) {
+                *count += 1;
+            }
+        }
+    }
+    let all = elements.iter().flat_map(|&element| faces_of(element));
+    all.filter(|&face| wanted.get(&corners(face)) == Some(&1)).collect()
+}

@@ -1,0 +1,103 @@
+//! Where Abaqus and CalculiX mean different things by the same lines, and what the reader takes them for.
+
+/// One difference between the dialects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Keyword, with what it is about.
+    pub subject: &'static str,
+    /// What Abaqus means: how the dialect `abaqus` reads it.
+    pub abaqus: &'static str,
+    /// What CalculiX means.
+    pub calculix: &'static str,
+    /// How the dialect `calculix` reads it, and why where that is not what CalculiX does.
+    pub read_as: &'static str,
+    /// Whether the dialect `calculix` follows CalculiX.
+    pub follows_calculix: bool,
+}
+
+const fn follows(
+    subject: &'static str,
+    abaqus: &'static str,
+    calculix: &'static str,
+    read_as: &'static str,
+) -> Difference {
+    Difference { subject, abaqus, calculix, read_as, follows_calculix: true }
+}
+
+const fn departs(
+    subject: &'static str,
+    abaqus: &'static str,
+    calculix: &'static str,
+    read_as: &'static str,
+) -> Difference {
+    Difference { subject, abaqus, calculix, read_as, follows_calculix: false }
+}
+
+const DIFFERENCES: &[Difference] = &[
+    follows(
+        "*ELEMENT, TYPE=C3D8",
+        "the volumetric strain is averaged over the element (selectively reduced integration)",
+        "all strains are integrated at 2x2x2 points",
+        "as CalculiX",
+    ),
+    follows(
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL",
+        "p = p0/(e-1) (1+h/c0) (exp(1+h/c0) - 1) for h > -c0, straight beyond h = 6 c0",
+        "p = p0 100^(h/c0), cut to 0 below h = -c0, where 1 % of p0 is left",
+        "as CalculiX's node-to-surface contact, straight far beyond h = 4.99 c0 where CalculiX caps the force",
+    ),
+    departs(
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+        "one item, the slope K: p = K h for h > 0; more items are an error",
+        "items K, sigma_inf, c0: the law is smoothed by an arctangent and pulls with up to sigma_inf at open points",
+        "p = K h for h > 0; further items are ignored with a warning, because the smoothing lets open points pull and closed ones yield",
+    ),
+    departs(
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD",
+        "no overclosure, enforced exactly",
+        "replaced by LINEAR with K = 50 times the modulus of the first material",
+        "enforced exactly, with a warning: a stiffness that nobody chose is no answer",
+    ),
+    departs(
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR",
+        "beyond the last point the last slope goes on",
+        "outside the table the pressure is constant",
+        "as Abaqus, with a warning: at constant pressure a body may fall through the other; below the first point the pressure is 0",
+    ),
+    departs(
+        "*SURFACE INTERACTION without *SURFACE BEHAVIOR",
+        "hard contact",
+        "the run stops",
+        "hard contact, with a warning",
+    ),
+    departs(
+        "*CONTACT PAIR, contact elements",
+        "a point far from the primary surface comes into contact when it gets there",
+        "springs are made for points closer than c0 times the square root of their area, once per increment",
+        "as Abaqus: nothing is cut off",
+    ),
+    departs("*CONTACT PAIR without TYPE", "node-to-surface", "the run stops", "node-to-surface"),
+    departs(
+        "*CONTACT PAIR, initial overclosure",
+        "resolved in the first increment",
+        "resolved over the first step",
+        "as Abaqus",
+    ),
+    follows(
+        "*DLOAD, GRAV",
+        "the direction is a direction only; the magnitude is the acceleration",
+        "the acceleration is the magnitude times the vector, whatever its length",
+        "as CalculiX",
+    ),
+    departs(
+        "*CONTACT FILE, *CONTACT PRINT: COPEN",
+        "clearance, positive when open",
+        "clearances are stored as 0, overclosures as negative values",
+        "as Abaqus",
+    ),
+];
+
+/// Every place where the dialects differ.
+pub fn differences() -> &'static [Difference] {
+    DIFFERENCES
+}
