@@ -42,7 +42,8 @@ const FMI2_LAST_SUCCESSFUL_TIME: c_int = 2;
 const FMI2_TERMINATED: c_int = 3;
 
 /// `fmi2CallbackLogger`: variadic, but never called with more than the message.
-pub type fmi2CallbackLogger = unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, c_int, fmi2String, fmi2String, ...);
+pub type fmi2CallbackLogger =
+    unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, c_int, fmi2String, fmi2String, ...);
 
 /// `fmi2CallbackFunctions`. Any member may be null.
 #[repr(C)]
@@ -98,9 +99,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
     loggingOn: fmi2Boolean,
 ) -> fmi2Component {
     // SAFETY: the importer keeps the contract above.
-    let (name, guid, location, functions) = unsafe {
-        (text(instanceName), text(fmuGUID), text(fmuResourceLocation), functions.as_ref().copied())
-    };
+    let (name, guid, location, functions) =
+        unsafe { (text(instanceName), text(fmuGUID), text(fmuResourceLocation), functions.as_ref().copied()) };
     let request = open::Request {
         name: name.unwrap_or_default(),
         co_simulation: fmuType == FMI2_CO_SIMULATION,
@@ -332,7 +332,8 @@ pub unsafe extern "C" fn fmi2SetInteger(
     unsafe {
         enter(c, Call::SetInteger, |c| match (array(vr, nvr), array(value, nvr)) {
             (Some(references), Some(values)) => {
-                let entries = references.iter().zip(values).map(|(&reference, &value)| (reference, Value::Integer(value)));
+                let entries =
+                    references.iter().zip(values).map(|(&reference, &value)| (reference, Value::Integer(value)));
                 c.instance.set(Call::SetInteger, entries)
             }
             _ => refuse_null(c, Call::SetInteger),
@@ -380,7 +381,9 @@ pub unsafe extern "C" fn fmi2SetString(
             let mut entries = Vec::with_capacity(references.len());
             for (&reference, &value) in references.iter().zip(values) {
                 let Some(value) = text(value) else {
-                    return c.instance.refuse(Call::SetString, format!("value reference {reference}: null or not UTF-8"));
+                    return c
+                        .instance
+                        .refuse(Call::SetString, format!("value reference {reference}: null or not UTF-8"));
                 };
                 entries.push((reference, Value::String(value)));
             }

@@ -259,12 +259,7 @@ impl Instance {
             Some(_) => return Err(self.refuse_state(call)),
             None => NEXT_STATE.fetch_add(1, Ordering::Relaxed),
         };
-        let head = Head {
-            guid: self.guid.clone(),
-            phase: self.phase,
-            clock: self.clock,
-            values: self.values.clone(),
-        };
+        let head = Head { guid: self.guid.clone(), phase: self.phase, clock: self.clock, values: self.values.clone() };
         let bytes = snapshot::encode(&head, &self.backend.save()).map_err(|error| self.refuse(call, error))?;
         self.states.insert(handle, bytes);
         Ok(handle)
@@ -276,13 +271,14 @@ impl Instance {
         let Some(bytes) = self.states.get(&handle) else {
             return self.refuse_state(call);
         };
-        let restored = snapshot::decode(bytes, &self.guid).map_err(|error| error.to_string()).and_then(|(head, rest)| {
-            if self.backend.table().fits(&head.values) {
-                self.backend.restore(rest, &head.values).map(|()| head)
-            } else {
-                Err("saved state has other variables".into())
-            }
-        });
+        let restored =
+            snapshot::decode(bytes, &self.guid).map_err(|error| error.to_string()).and_then(|(head, rest)| {
+                if self.backend.table().fits(&head.values) {
+                    self.backend.restore(rest, &head.values).map(|()| head)
+                } else {
+                    Err("saved state has other variables".into())
+                }
+            });
         match restored {
             Ok(head) => {
                 self.phase = head.phase;
@@ -345,7 +341,10 @@ impl Instance {
                 self.phase = Phase::StepFailed;
                 self.clock.reached = self.clock.start + elapsed;
                 let reached = self.clock.reached;
-                self.refuse(call, format!("{reason}; the solution stands at time {reached}; set a saved state or reset to go on"))
+                self.refuse(
+                    call,
+                    format!("{reason}; the solution stands at time {reached}; set a saved state or reset to go on"),
+                )
             }
         }
     }
@@ -359,7 +358,13 @@ impl Instance {
         Ok(())
     }
 
-    fn get<T>(&mut self, call: Call, references: &[u32], out: &mut [T], read: impl Fn(&Values, Slot) -> Option<T>) -> Status {
+    fn get<T>(
+        &mut self,
+        call: Call,
+        references: &[u32],
+        out: &mut [T],
+        read: impl Fn(&Values, Slot) -> Option<T>,
+    ) -> Status {
         if let Err(fault) = self.catch_up() {
             return self.fail(call, fault);
         }
@@ -390,11 +395,7 @@ impl Instance {
 }
 
 fn check_real(variable: &Variable, value: f64) -> Result<(), String> {
-    if value.is_finite() {
-        Ok(())
-    } else {
-        Err(format!("{}: {value} is not a finite number", variable.name))
-    }
+    if value.is_finite() { Ok(()) } else { Err(format!("{}: {value} is not a finite number", variable.name)) }
 }
 
 fn unknown(call: Call, reference: u32) -> String {

@@ -158,11 +158,9 @@ impl Call {
             Call::GetReal | Call::GetInteger | Call::GetBoolean | Call::GetString | Call::GetDirectionalDerivative => {
                 &[Initialization, StepComplete, StepFailed, Terminated]
             }
-            Call::SetReal
-            | Call::SetInteger
-            | Call::SetBoolean
-            | Call::SetString
-            | Call::SetRealInputDerivatives => &[Instantiated, Initialization, StepComplete],
+            Call::SetReal | Call::SetInteger | Call::SetBoolean | Call::SetString | Call::SetRealInputDerivatives => {
+                &[Instantiated, Initialization, StepComplete]
+            }
             Call::GetRealOutputDerivatives
             | Call::GetStatus
             | Call::GetRealStatus

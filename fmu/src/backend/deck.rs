@@ -107,8 +107,7 @@ impl DeckBackend {
                 *pending = false;
             }
         }
-        let outcome =
-            self.simulation.advance(target, &mut ()).map_err(|error| Fault::Refused(error.to_string()))?;
+        let outcome = self.simulation.advance(target, &mut ()).map_err(|error| Fault::Refused(error.to_string()))?;
         self.observe(values);
         self.judge(outcome)
     }

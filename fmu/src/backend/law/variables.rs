@@ -74,7 +74,14 @@ const DESCRIPTIONS: [(&str, &str, &str); 7] = [
 pub fn variables() -> Vec<Variable> {
     let mut list = vec![
         real("overclosure", Causality::Input, 0.0, "m", None, "Overclosure, positive when the bodies overlap"),
-        real("closing_velocity", Causality::Input, 0.0, "m/s", None, "Rate of the overclosure, positive when the bodies approach"),
+        real(
+            "closing_velocity",
+            Causality::Input,
+            0.0,
+            "m/s",
+            None,
+            "Rate of the overclosure, positive when the bodies approach",
+        ),
     ];
     for (name, unit, description) in DESCRIPTIONS {
         list.push(real(name, Causality::Output, 0.0, unit, None, description));
@@ -106,8 +113,7 @@ pub fn variables() -> Vec<Variable> {
         Some(0.0),
         "Exponential law of Abaqus/Explicit: limit of the slope; 0 for none",
     ));
-    for (column, unit, second, what) in
-        [("pressure", "Pa", 1e6, "pressure"), ("overclosure", "m", 1e-3, "overclosure")]
+    for (column, unit, second, what) in [("pressure", "Pa", 1e6, "pressure"), ("overclosure", "m", 1e-3, "overclosure")]
     {
         for row in 1..=TABLE_POINTS_MAX {
             let start = if row == 2 { second } else { 0.0 };
@@ -130,12 +136,7 @@ pub fn variables() -> Vec<Variable> {
         Causality::Output,
         Kind::Integer { start: 0, min: 0, max: 1 },
     ));
-    list.push(discrete(
-        "law.kind",
-        "Which law",
-        parameter,
-        Kind::Enumeration { start: 1, definition: &LAW_KIND },
-    ));
+    list.push(discrete("law.kind", "Which law", parameter, Kind::Enumeration { start: 1, definition: &LAW_KIND }));
     list.push(discrete(
         "law.kind_integer",
         "For importers without enumerations: number of the law; 0 leaves the choice to law.kind",
@@ -160,8 +161,9 @@ pub fn variables() -> Vec<Variable> {
 
 /// Which outputs follow which variables.
 fn connect(list: &mut [Variable]) {
-    let settable: Vec<usize> =
-        (0..list.len()).filter(|&at| list[at].causality != Causality::Output && at != Reals::CLOSING_VELOCITY).collect();
+    let settable: Vec<usize> = (0..list.len())
+        .filter(|&at| list[at].causality != Causality::Output && at != Reals::CLOSING_VELOCITY)
+        .collect();
     for variable in list.iter_mut().filter(|variable| variable.causality == Causality::Output) {
         variable.feed_through.push(Reals::OVERCLOSURE);
         variable.initial_dependencies.clone_from(&settable);
