@@ -27,7 +27,10 @@ fn number(name: &str, text: &str) -> Result<f64, Fault> {
 /// Overclosures from `h1,h2,...` or `FROM:TO:STEP` (both ends included); at most `points_max` of them.
 pub fn overclosures(text: &str, points_max: usize) -> Result<Vec<f64>, Fault> {
     let limit = |count: String| {
-        let mut fault = Fault::new(FaultCode::LimitExceeded, format!("at: {count} overclosures are more than the {points_max} allowed in one request"));
+        let mut fault = Fault::new(
+            FaultCode::LimitExceeded,
+            format!("at: {count} overclosures are more than the {points_max} allowed in one request"),
+        );
         fault.details.limit = Some(points_max as u64);
         fault
     };
@@ -36,10 +39,12 @@ pub fn overclosures(text: &str, points_max: usize) -> Result<Vec<f64>, Fault> {
         [from, to, step] => {
             let (from, to, step) = (number("at", from)?, number("at", to)?, number("at", step)?);
             if !(from.is_finite() && to.is_finite() && step.is_finite() && step != 0.0 && (to - from) / step >= 0.0) {
-                return Err(bad(format!("at: {text:?} is no range; write FROM:TO:STEP with a step that leads from FROM to TO")));
+                return Err(bad(format!(
+                    "at: {text:?} is no range; write FROM:TO:STEP with a step that leads from FROM to TO"
+                )));
             }
-            // A millionth of a step forgives the rounding of ends such as 0.3 = 3 * 0.1.
-            let count = ((to - from) / step + 1e-6).floor() + 1.0;
+            // The end counts as reached when it is missed by rounding alone, as in 0.3 = 3 * 0.1.
+            let count = ((to - from) / step * (1.0 + 1e-12) + 1e-9).floor() + 1.0;
             if count > points_max as f64 {
                 return Err(limit(format!("{count:.0}")));
             }
@@ -70,7 +75,8 @@ pub fn law(parameters: &str, points_max: usize) -> Result<LawRequest, Fault> {
     if request.kind.is_empty() {
         return Err(bad("kind is missing; write e.g. ?kind=linear;stiffness=1e6;at=0,0.01".into()));
     }
-    request.overclosure = at.ok_or_else(|| bad("at is missing; write e.g. at=-0.005,0,0.01 or at=FROM:TO:STEP".into()))?;
+    request.overclosure =
+        at.ok_or_else(|| bad("at is missing; write e.g. at=-0.005,0,0.01 or at=FROM:TO:STEP".into()))?;
     Ok(request)
 }
 
@@ -80,7 +86,10 @@ pub fn step(parameters: &str) -> Result<StepRequest, Fault> {
     let (mut sequence, mut time) = (None, None);
     for (name, value) in pairs(parameters) {
         match name {
-            "sequence" => sequence = Some(value.trim().parse().map_err(|_| bad(format!("sequence: {value:?} is not a whole number")))?),
+            "sequence" => {
+                sequence =
+                    Some(value.trim().parse().map_err(|_| bad(format!("sequence: {value:?} is not a whole number")))?)
+            }
             "time" => time = Some(number(name, value)?),
             "frames" => request.frames = value.split(',').map(|f| f.trim().to_owned()).collect(),
             _ => request.inputs.push(InputValue { name: name.to_owned(), value: number(name, value)? }),
@@ -147,7 +156,15 @@ mod tests {
 
     #[test]
     fn nonsense_is_named() {
-        for text in ["at=0", "kind=linear", "kind=linear;at=a", "kind=linear;at=0:1", "kind=linear;at=0:1:0", "kind=linear;at=0:1:-1", "kind=linear;at=0:1:1:1"] {
+        for text in [
+            "at=0",
+            "kind=linear",
+            "kind=linear;at=a",
+            "kind=linear;at=0:1",
+            "kind=linear;at=0:1:0",
+            "kind=linear;at=0:1:-1",
+            "kind=linear;at=0:1:1:1",
+        ] {
             assert_eq!(law(text, 10).expect_err("refused").code, FaultCode::BadRequest, "{text}");
         }
         assert!(step("time=1").is_err() && step("sequence=1").is_err() && step("sequence=x;time=1").is_err());
@@ -156,7 +173,8 @@ mod tests {
 
     #[test]
     fn other_names_of_a_step_are_inputs() {
-        let request = step("sequence=3;time=0.5;boundary.NTOP.3=-0.1;frames=U,CPRESS;_time=[now()]").expect("a good selector");
+        let request =
+            step("sequence=3;time=0.5;boundary.NTOP.3=-0.1;frames=U,CPRESS;_time=[now()]").expect("a good selector");
         assert_eq!((request.sequence, request.time), (3, 0.5));
         assert_eq!(request.inputs, [InputValue { name: "boundary.NTOP.3".into(), value: -0.1 }]);
         assert_eq!(request.frames, ["U", "CPRESS"]);

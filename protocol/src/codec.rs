@@ -176,7 +176,14 @@ mod tests {
 
     #[test]
     fn nothing_stated_means_json() {
-        for text in [None, Some(""), Some("zenoh/bytes"), Some("zenoh/string"), Some("application/json"), Some("text/plain;charset=utf-8")] {
+        for text in [
+            None,
+            Some(""),
+            Some("zenoh/bytes"),
+            Some("zenoh/string"),
+            Some("application/json"),
+            Some("text/plain;charset=utf-8"),
+        ] {
             assert_eq!(negotiate(text), Ok(Stated { format: Format::Json, schema: String::new() }), "{text:?}");
         }
     }
@@ -203,7 +210,12 @@ mod tests {
 
     #[test]
     fn numbers_that_json_lacks_survive_it() {
-        let reply = LawReply { kind: "x".into(), overclosure: vec![f64::NEG_INFINITY, 1.5], pressure: vec![f64::NAN], ..Default::default() };
+        let reply = LawReply {
+            kind: "x".into(),
+            overclosure: vec![f64::NEG_INFINITY, 1.5],
+            pressure: vec![f64::NAN],
+            ..Default::default()
+        };
         let bytes = encode(&reply, Format::Json).expect("encodes");
         let back: LawReply = decode(&bytes, Format::Json, 1000).expect("decodes");
         assert_eq!(back.overclosure, reply.overclosure);
@@ -234,6 +246,9 @@ mod tests {
         // kind "", then 2^62 overclosures that are not there.
         let bytes = [0, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x40];
         assert!(matches!(decode::<LawReply>(&bytes, Format::Postcard, 100), Err(DecodeError::Malformed { .. })));
-        assert!(matches!(decode::<LawReply>(&[0; 101], Format::Postcard, 100), Err(DecodeError::TooLarge { limit: 100, .. })));
+        assert!(matches!(
+            decode::<LawReply>(&[0; 101], Format::Postcard, 100),
+            Err(DecodeError::TooLarge { limit: 100, .. })
+        ));
     }
 }

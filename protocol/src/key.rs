@@ -59,16 +59,8 @@ pub enum SessionVerb {
 
 impl SessionVerb {
     /// All of them, in the order of the documentation.
-    pub const ALL: [Self; 8] = [
-        Self::Ports,
-        Self::Step,
-        Self::Get,
-        Self::Field,
-        Self::Checkpoint,
-        Self::Restore,
-        Self::Report,
-        Self::Close,
-    ];
+    pub const ALL: [Self; 8] =
+        [Self::Ports, Self::Step, Self::Get, Self::Field, Self::Checkpoint, Self::Restore, Self::Report, Self::Close];
 
     /// Last chunk of the key.
     pub fn name(self) -> &'static str {
@@ -241,7 +233,12 @@ mod tests {
 
     #[test]
     fn keys_without_a_verb_are_unknown() {
-        for key in ["overclosure/v1/d1/fly", "overclosure/v1/d1/s/7", "overclosure/v1/d1/s/7/frame/U", "overclosure/v2/d1/info"] {
+        for key in [
+            "overclosure/v1/d1/fly",
+            "overclosure/v1/d1/s/7",
+            "overclosure/v1/d1/s/7/frame/U",
+            "overclosure/v2/d1/info",
+        ] {
             assert!(matches!(parse(key), Err(KeyError::UnknownVerb { .. })), "{key}");
         }
     }

@@ -129,7 +129,11 @@ pub mod numbers {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub fn serialize<S: Serializer>(values: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-        if serializer.is_human_readable() { serializer.collect_seq(values.iter().map(|v| Number(*v))) } else { values.serialize(serializer) }
+        if serializer.is_human_readable() {
+            serializer.collect_seq(values.iter().map(|v| Number(*v)))
+        } else {
+            values.serialize(serializer)
+        }
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64>, D::Error> {

@@ -13,7 +13,13 @@ use serde_json::{Value, json};
 const LIMIT: usize = 1 << 20;
 
 fn counts() -> Counts {
-    Counts { increments: 20, equilibrium_iterations: 45, severe_discontinuity_iterations: 6, cutbacks: 1, factorizations: 0 }
+    Counts {
+        increments: 20,
+        equilibrium_iterations: 45,
+        severe_discontinuity_iterations: 6,
+        cutbacks: 1,
+        factorizations: 0,
+    }
 }
 
 fn finding() -> Finding {
@@ -35,7 +41,12 @@ fn ports() -> Ports {
             description: "Prescribed displacement".into(),
         }],
         outputs: vec![
-            Port { name: "contact.SSL_SMA.CFN3".into(), quantity: Quantity::Force, unit: None, description: "Force on the secondary surface".into() },
+            Port {
+                name: "contact.SSL_SMA.CFN3".into(),
+                quantity: Quantity::Force,
+                unit: None,
+                description: "Force on the secondary surface".into(),
+            },
             Port { name: "increments".into(), quantity: Quantity::Count, unit: None, description: "Increments".into() },
         ],
     }
@@ -67,24 +78,43 @@ fn each_sample(check: &mut dyn Check) {
             threads: 8,
         },
     });
-    check.message(&Health { status: HealthStatus::Draining, uptime_seconds: 12.5, sessions_failed: 1, frames_dropped: 300 });
+    check.message(&Health {
+        status: HealthStatus::Draining,
+        uptime_seconds: 12.5,
+        sessions_failed: 1,
+        frames_dropped: 300,
+    });
     check.message(&Load {
         sessions_free: 15,
         steps: 128,
         increments: 2560,
         models: 1,
-        sessions: vec![SessionSummary { session: "1".into(), label: "punch".into(), working: true, waiting: 2, sequence_next: 129, time: 0.75 }],
+        sessions: vec![SessionSummary {
+            session: "1".into(),
+            label: "punch".into(),
+            working: true,
+            waiting: 2,
+            sequence_next: 129,
+            time: 0.75,
+        }],
     });
     check.message(&SchemaReply {
         messages: vec![MessageShape {
             name: "GetRequest/1".into(),
             purpose: "Request of `get`.".into(),
-            fields: vec![FieldShape { name: "names".into(), kind: "Vec<String>".into(), meaning: "Ports to read.".into() }],
+            fields: vec![FieldShape {
+                name: "names".into(),
+                kind: "Vec<String>".into(),
+                meaning: "Ports to read.".into(),
+            }],
         }],
     });
     check.message(&LawRequest {
         kind: "exponential".into(),
-        parameters: vec![Parameter { name: "c0".into(), value: "0.01".into() }, Parameter { name: "p0".into(), value: "5".into() }],
+        parameters: vec![
+            Parameter { name: "c0".into(), value: "0.01".into() },
+            Parameter { name: "p0".into(), value: "5".into() },
+        ],
         overclosure: vec![-0.005, 0.0, 0.01],
     });
     check.message(&LawReply {
@@ -141,7 +171,13 @@ fn each_sample(check: &mut dyn Check) {
         outputs: vec![NamedValue { name: "increments".into(), value: 20.0 }],
     });
     check.message(&FieldRequest { name: "CPRESS".into() });
-    check.message(&Field { name: "U".into(), time: 0.5, components: 3, labels: vec![1, 128, 4_000_000_000], values: (0..9).map(|i| f64::from(i) / 8.0).collect() });
+    check.message(&Field {
+        name: "U".into(),
+        time: 0.5,
+        components: 3,
+        labels: vec![1, 128, 4_000_000_000],
+        values: (0..9).map(|i| f64::from(i) / 8.0).collect(),
+    });
     check.message(&Checkpoint { time: 0.5, state: vec![0, 1, 127, 128, 255] });
     check.message(&RestoreRequest { sequence: 301, state: vec![0, 1, 127, 128, 255] });
     check.message(&RestoreReply { sequence: 301, time: 0.5, outputs: vec![1.0, 2.0] });
@@ -149,7 +185,12 @@ fn each_sample(check: &mut dyn Check) {
         session: "1".into(),
         sequence_next: 302,
         time: 0.5,
-        steps: vec![StepSummary { name: "Step-1".into(), procedure: "*STATIC".into(), time_reached: 0.5, counts: counts() }],
+        steps: vec![StepSummary {
+            name: "Step-1".into(),
+            procedure: "*STATIC".into(),
+            time_reached: 0.5,
+            counts: counts(),
+        }],
         audit: vec![],
         warnings: vec![],
     });
@@ -258,7 +299,11 @@ impl Check for Damage {
     fn message(&mut self, sample: &dyn Sample) {
         let bytes = sample.encode(Format::Postcard);
         for cut in 0..bytes.len() {
-            assert!(sample.decodes_to_itself(&bytes[..cut], Format::Postcard).is_err(), "{} cut at {cut}", sample.name());
+            assert!(
+                sample.decodes_to_itself(&bytes[..cut], Format::Postcard).is_err(),
+                "{} cut at {cut}",
+                sample.name()
+            );
         }
         for at in 0..bytes.len() {
             for bit in 0..8 {

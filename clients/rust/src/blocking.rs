@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use overclosure_protocol::message::{
-    Checkpoint, CloseReply, Field, Frame, GetReply, Health, Info, LawReply, LawRequest, Load, OpenReply, OpenRequest, Ports, Report, RestoreReply,
-    StepReply, StepRequest,
+    Checkpoint, CloseReply, Field, Frame, GetReply, Health, Info, LawReply, LawRequest, Load, OpenReply, OpenRequest,
+    Ports, Report, RestoreReply, StepReply, StepRequest,
 };
 use tokio::runtime::Runtime;
 
@@ -21,7 +21,11 @@ impl Client {
     /// See [`crate::Client::connect`].
     pub fn connect(options: Options) -> Result<Self, CallError> {
         // One worker beside the caller: zenoh needs a multi-threaded runtime.
-        let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build().map_err(CallError::transport)?;
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .map_err(CallError::transport)?;
         let inner = runtime.block_on(crate::Client::connect(options))?;
         Ok(Self { runtime: Arc::new(runtime), inner })
     }

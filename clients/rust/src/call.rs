@@ -53,7 +53,11 @@ impl Request {
 
 /// Sends a request until it is answered or patience ends. The same bytes each time, so that the daemon can tell a
 /// repetition from a new request.
-pub(crate) async fn call<R: Message>(session: &zenoh::Session, request: &Request, patience: Patience) -> Result<R, CallError> {
+pub(crate) async fn call<R: Message>(
+    session: &zenoh::Session,
+    request: &Request,
+    patience: Patience,
+) -> Result<R, CallError> {
     let mut pause = PAUSE;
     let mut attempt = 1;
     loop {
@@ -89,7 +93,8 @@ async fn once<R: Message>(session: &zenoh::Session, request: &Request, timeout: 
         Ok(sample) => {
             let bytes = sample.payload().to_bytes();
             let stated = codec::negotiate(Some(&sample.encoding().to_string()))?;
-            codec::decode_stated(&bytes, &stated, REPLY_BYTES_MAX).map_err(|e| CallError::transport(format!("{}: {e}", request.key)))
+            codec::decode_stated(&bytes, &stated, REPLY_BYTES_MAX)
+                .map_err(|e| CallError::transport(format!("{}: {e}", request.key)))
         }
         Err(error) => Err(match fault(error.encoding(), &error.payload().to_bytes()) {
             Some(fault) => CallError::Fault(fault),

@@ -6,7 +6,9 @@ use std::time::Duration;
 use overclosure_protocol::DEFAULT_ENDPOINT;
 use overclosure_protocol::fault::{Fault, FaultCode};
 use overclosure_protocol::key::{self, DaemonVerb, SessionVerb};
-use overclosure_protocol::message::{GetReply, Health, Info, LawReply, LawRequest, Load, Message, OpenReply, OpenRequest, Ports};
+use overclosure_protocol::message::{
+    GetReply, Health, Info, LawReply, LawRequest, Load, Message, OpenReply, OpenRequest, Ports,
+};
 
 use crate::call::{Patience, REPLY_BYTES_MAX, Request, call};
 use crate::network::{Side, zenoh_config};
@@ -60,7 +62,9 @@ impl Client {
         let timeout_ms = u64::try_from(options.timeout_connect.as_millis()).unwrap_or(u64::MAX).min(i64::MAX as u64);
         let side = Side::Client { connect: vec![options.endpoint.clone()], timeout_ms };
         let config = zenoh_config(&side, REPLY_BYTES_MAX as u64).map_err(CallError::transport)?;
-        let zenoh = zenoh::open(config).await.map_err(|e| CallError::transport(format!("cannot connect to {}: {e}", options.endpoint)))?;
+        let zenoh = zenoh::open(config)
+            .await
+            .map_err(|e| CallError::transport(format!("cannot connect to {}: {e}", options.endpoint)))?;
         let request = Request::bare(key::daemon(options.daemon.as_deref().unwrap_or("*"), DaemonVerb::Info));
         let patience = Patience { timeout: options.timeout, attempts: options.attempts };
         let info = call(&zenoh, &request, patience).await?;
@@ -92,7 +96,8 @@ impl Client {
         if request.token.is_empty() {
             request.token = token(&self.shared.zenoh);
         }
-        let reply: OpenReply = self.request(key::daemon(self.daemon(), DaemonVerb::Open), &request, self.work()).await?;
+        let reply: OpenReply =
+            self.request(key::daemon(self.daemon(), DaemonVerb::Open), &request, self.work()).await?;
         Ok(Session::new(self.clone(), reply))
     }
 
@@ -137,12 +142,22 @@ impl Client {
         Patience { timeout: self.shared.options.timeout_work, attempts: self.shared.options.attempts }
     }
 
-    pub(crate) async fn request<Q: Message, R: Message>(&self, key: String, request: &Q, patience: Patience) -> Result<R, CallError> {
+    pub(crate) async fn request<Q: Message, R: Message>(
+        &self,
+        key: String,
+        request: &Q,
+        patience: Patience,
+    ) -> Result<R, CallError> {
         let request = Request::new(key, request, self.shared.info.limits.message_bytes)?;
         call(&self.shared.zenoh, &request, patience).await
     }
 
-    pub(crate) async fn ask_session<R: Message>(&self, session: &str, verb: SessionVerb, patience: Patience) -> Result<R, CallError> {
+    pub(crate) async fn ask_session<R: Message>(
+        &self,
+        session: &str,
+        verb: SessionVerb,
+        patience: Patience,
+    ) -> Result<R, CallError> {
         let request = Request::bare(key::session(self.daemon(), session, verb));
         call(&self.shared.zenoh, &request, patience).await
     }

@@ -24,7 +24,9 @@ pub enum Side {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NetworkError {
     /// Not a locator.
-    #[error("{locator:?} is not a locator such as tcp/127.0.0.1:7447 or unixsock-stream//run/overclosure.sock: {detail}")]
+    #[error(
+        "{locator:?} is not a locator such as tcp/127.0.0.1:7447 or unixsock-stream//run/overclosure.sock: {detail}"
+    )]
     Locator {
         /// The text.
         locator: String,
@@ -66,7 +68,11 @@ pub fn zenoh_config(side: &Side, message_bytes_max: u64) -> Result<Config, Netwo
     }
     let mut config = Config::default();
     let mut set = |key: &'static str, value: String| {
-        config.insert_json5(key, &value).map_err(|e| NetworkError::Setting { key, value: value.clone(), detail: e.to_string() })
+        config.insert_json5(key, &value).map_err(|e| NetworkError::Setting {
+            key,
+            value: value.clone(),
+            detail: e.to_string(),
+        })
     };
     set("mode", format!("{mode:?}"))?;
     set("scouting/multicast/enabled", "false".into())?;

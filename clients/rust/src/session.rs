@@ -4,8 +4,8 @@ use overclosure_protocol::codec;
 use overclosure_protocol::fault::FaultCode;
 use overclosure_protocol::key::{self, OUTPUTS_FRAME, SessionVerb};
 use overclosure_protocol::message::{
-    Checkpoint, CloseReply, Field, FieldRequest, Frame, GetReply, GetRequest, InputValue, OpenReply, Ports, Report, RestoreReply, RestoreRequest,
-    StepReply, StepRequest,
+    Checkpoint, CloseReply, Field, FieldRequest, Frame, GetReply, GetRequest, InputValue, OpenReply, Ports, Report,
+    RestoreReply, RestoreRequest, StepReply, StepRequest,
 };
 use zenoh::handlers::{RingChannel, RingChannelHandler};
 use zenoh::sample::{Sample, SampleKind};
@@ -93,7 +93,8 @@ impl Session {
     /// Returns to a state.
     pub async fn restore(&mut self, state: &[u8]) -> Result<RestoreReply, CallError> {
         let request = RestoreRequest { sequence: self.sequence_next, state: state.to_vec() };
-        let reply: RestoreReply = self.client.request(self.key(SessionVerb::Restore), &request, self.client.work()).await?;
+        let reply: RestoreReply =
+            self.client.request(self.key(SessionVerb::Restore), &request, self.client.work()).await?;
         self.sequence_next = reply.sequence + 1;
         Ok(reply)
     }
@@ -107,7 +108,9 @@ impl Session {
     pub async fn close(self) -> Result<CloseReply, CallError> {
         let session = self.id().to_owned();
         match self.client.ask_session(&session, SessionVerb::Close, self.client.work()).await {
-            Err(CallError::Fault(fault)) if fault.code == FaultCode::UnknownSession => Ok(CloseReply { session, time: f64::NAN }),
+            Err(CallError::Fault(fault)) if fault.code == FaultCode::UnknownSession => {
+                Ok(CloseReply { session, time: f64::NAN })
+            }
             outcome => outcome,
         }
     }
@@ -150,6 +153,8 @@ impl Frames {
             return Ok(None);
         }
         let stated = codec::negotiate(Some(&sample.encoding().to_string()))?;
-        codec::decode_stated(&sample.payload().to_bytes(), &stated, REPLY_BYTES_MAX).map(Some).map_err(CallError::transport)
+        codec::decode_stated(&sample.payload().to_bytes(), &stated, REPLY_BYTES_MAX)
+            .map(Some)
+            .map_err(CallError::transport)
     }
 }

@@ -17,11 +17,13 @@ mod stepping;
 pub use daemon::{Health, HealthStatus, Info, Limits, Load, SchemaReply, SessionSummary};
 pub use law::{LawReply, LawRequest, Parameter};
 pub use session::{
-    CloseReply, Dialect, Finding, InputValue, OpenReply, OpenRequest, Port, Ports, Quantity, Report, Severity, SolverPath, StepSummary,
+    CloseReply, Dialect, Finding, InputValue, OpenReply, OpenRequest, Port, Ports, Quantity, Report, Severity,
+    SolverPath, StepSummary,
 };
 pub use shape::{Choice, Empty, FieldShape, Message, MessageShape, shapes};
 pub use stepping::{
-    Checkpoint, Counts, Field, FieldRequest, Frame, GetReply, GetRequest, NamedValue, RestoreReply, RestoreRequest, StepReply, StepRequest, StepStatus,
+    Checkpoint, Counts, Field, FieldRequest, Frame, GetReply, GetRequest, NamedValue, RestoreReply, RestoreRequest,
+    StepReply, StepRequest, StepStatus,
 };
 
 pub(crate) use shape::{choice, message};
