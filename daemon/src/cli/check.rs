@@ -1,14 +1,20 @@
-//! `overclosure check`: reads a deck and reports what it found.
+//! `overclosure check`: reads a deck, reports what it found and what it understood. Solves nothing.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use overclosure::deck;
+use overclosure::port::{self, Port};
 
 use super::open::{count, open_deck};
-use super::{DialectArg, Exit, complain};
+use super::{DialectArg, Exit, complain, print};
 
 /// Arguments of `overclosure check`.
 #[derive(Args)]
+#[command(
+    after_help = "Findings go to stderr, what was understood to stdout. Whether every body is held is found by `run`."
+)]
 pub struct CheckArgs {
     /// The deck.
     deck: PathBuf,
@@ -19,11 +25,26 @@ pub struct CheckArgs {
 
 /// Runs the verb.
 pub fn run(arguments: CheckArgs) -> Exit {
-    match open_deck(&arguments.deck, arguments.dialect.into()) {
-        Ok(opened) => {
-            complain(&count(&arguments.deck, &opened.diagnostics));
-            Exit::Done
-        }
+    let opened = match open_deck(&arguments.deck, arguments.dialect.into()) {
+        Ok(opened) => opened,
+        Err(exit) => return exit,
+    };
+    complain(&count(&arguments.deck, &opened.diagnostics));
+    let mut text = deck::summary(&opened.model);
+    list(&mut text, &port::inputs_of(&opened.model));
+    match print(&text) {
+        Ok(()) => Exit::Done,
         Err(exit) => exit,
+    }
+}
+
+/// The inputs of the deck, by their names on the command line, on the wire and in an FMU.
+fn list(text: &mut String, inputs: &[Port]) {
+    for port in inputs {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{:<14}{}: {}", "input", port.name, port.description);
+    }
+    if inputs.is_empty() {
+        text.push_str("inputs        none\n");
     }
 }

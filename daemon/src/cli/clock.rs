@@ -76,10 +76,13 @@ impl Clock {
         std::mem::replace(&mut self.stage, stage)
     }
 
-    /// Seconds by name of the stage, the present one included.
+    /// Seconds by name of the stage, the present one included, to the microsecond.
     pub fn seconds(&self) -> BTreeMap<String, f64> {
         let mut seconds: BTreeMap<String, f64> = self.seconds.iter().map(|(n, s)| ((*n).to_owned(), *s)).collect();
         *seconds.entry(self.stage.name().to_owned()).or_default() += self.since.elapsed().as_secs_f64();
+        for value in seconds.values_mut() {
+            *value = (*value * 1e6).round() / 1e6;
+        }
         seconds
     }
 }

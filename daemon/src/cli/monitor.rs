@@ -32,15 +32,14 @@ impl<'a> Monitor<'a> {
     }
 
     /// The writer, to be finished, and every finding of the audit.
-    pub fn finish(mut self, simulation: &Simulation) -> (ResultWriter, Vec<String>) {
-        self.audit.take(simulation, "at the end");
+    pub fn finish(self) -> (ResultWriter, Vec<String>) {
         (self.writer, self.audit.findings())
     }
 }
 
 impl Watch for Monitor<'_> {
     fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
-        self.audit.take(simulation, &format!("in step {}, increment {}", report.step, report.increment));
+        self.audit.take(simulation.audit(), &format!("step {}, increment {}", report.step, report.increment));
         let solving = self.clock.enter(Stage::WRITE);
         self.writer.increment(simulation, report);
         self.clock.enter(solving);
@@ -52,24 +51,61 @@ impl Watch for Monitor<'_> {
     }
 }
 
-/// Findings of the audit in the order in which they first appeared.
+/// Findings of the audit, each kind once, in the order in which they first appeared.
 #[derive(Default)]
 struct Audit {
-    /// What, where first, and in how many increments.
-    findings: Vec<(String, String, u32)>,
+    kinds: Vec<Kind>,
+}
+
+/// Findings that differ only in their numbers.
+struct Kind {
+    first: String,
+    place: String,
+    increments: u32,
 }
 
 impl Audit {
-    fn take(&mut self, simulation: &Simulation, place: &str) {
-        for finding in simulation.audit() {
-            match self.findings.iter_mut().find(|(known, _, _)| *known == finding) {
-                Some((_, _, count)) => *count += 1,
-                None => self.findings.push((finding, place.to_owned(), 1)),
+    fn take(&mut self, findings: Vec<String>, place: &str) {
+        for finding in findings {
+            match self.kinds.iter_mut().find(|kind| wording(&kind.first) == wording(&finding)) {
+                Some(kind) => kind.increments += 1,
+                None => self.kinds.push(Kind { first: finding, place: place.to_owned(), increments: 1 }),
             }
         }
     }
 
     fn findings(self) -> Vec<String> {
-        self.findings.into_iter().map(|(finding, place, _)| format!("{finding} ({place})")).collect()
+        let told = |Kind { first, place, increments }| match increments {
+            1 => format!("{place}: {first}"),
+            _ => format!("{place} and {} more: {first}", increments - 1),
+        };
+        self.kinds.into_iter().map(told).collect()
+    }
+}
+
+/// The words before the first colon, without numbers.
+fn wording(finding: &str) -> String {
+    let head = finding.split(':').next().unwrap_or(finding);
+    head.chars().filter(|c| !c.is_ascii_digit()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kind_of_finding_is_told_once() {
+        let mut audit = Audit::default();
+        audit.take(vec!["tension at 3 contact points: node 1".into()], "step 1, increment 1");
+        audit
+            .take(vec!["tension at 12 contact points: node 2".into(), "overlap: node 4".into()], "step 1, increment 2");
+        let findings = audit.findings();
+        assert_eq!(
+            findings,
+            [
+                "step 1, increment 1 and 1 more: tension at 3 contact points: node 1",
+                "step 1, increment 2: overlap: node 4"
+            ]
+        );
     }
 }

@@ -9,7 +9,7 @@ use clap::Args;
 use overclosure::diagnostic::Diagnostic;
 use overclosure::model::Dialect;
 use overclosure::output::{Finding, ModelSize, OutputError, ResultWriter, RunOutcome, RunReport, write_report};
-use overclosure::port::PortList;
+use overclosure::port::{self, PortList};
 use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Simulation};
 
 use super::clock::{Clock, Stage};
@@ -83,7 +83,12 @@ impl Job {
         let assignments = settings::parse(&sets);
         let ports_toml = read_ports(ports.as_deref(), &deck);
         let opened = open_deck(&deck, dialect)?;
-        let options = PrepareOptions { path: path.into(), threads, ports_toml: ports_toml? };
+        let ports_toml = ports_toml?;
+        if ports_toml.is_none() {
+            // A misspelt name need not wait for the factorisation. Declared names are known only after it.
+            settings::resolve(&assignments, &port::inputs_of(&opened.model))?;
+        }
+        let options = PrepareOptions { path: path.into(), threads, ports_toml };
         let mut diagnostics = opened.diagnostics;
         let prepared = PreparedModel::prepare(opened.model, &options, &mut |phase| {
             let stage = Stage::Phase(phase);
@@ -100,7 +105,7 @@ impl Job {
         })?;
         progress.hidden_while(|| report(prepared.warnings()));
         diagnostics.extend_from_slice(prepared.warnings());
-        let settings = progress.hidden_while(|| settings::resolve(assignments, &prepared.ports().inputs))?;
+        let settings = progress.hidden_while(|| settings::resolve(&assignments, &prepared.ports().inputs))?;
         let name = match deck.file_stem() {
             Some(stem) => stem.to_string_lossy().into_owned(),
             None => String::from("job"),
@@ -132,7 +137,7 @@ impl Job {
                 return Err(Exit::OurFailure);
             }
         };
-        let (writer, audit) = monitor.finish(&simulation);
+        let (writer, audit) = monitor.finish();
         self.clock.enter(Stage::WRITE);
         self.progress.stage(Stage::WRITE);
         let written = writer.finish(&simulation);

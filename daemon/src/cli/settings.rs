@@ -16,7 +16,7 @@ pub struct Setting {
 }
 
 /// `PORT=VALUE` taken apart; the value is the text and why it is no number, if it is none.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Assignment {
     name: String,
     value: Result<f64, String>,
@@ -40,7 +40,7 @@ pub fn parse(texts: &[String]) -> Vec<Assignment> {
 }
 
 /// Finds the inputs by name; every fault is told, with the inputs that there are.
-pub fn resolve(assignments: Vec<Assignment>, inputs: &[Port]) -> Result<Vec<Setting>, Exit> {
+pub fn resolve(assignments: &[Assignment], inputs: &[Port]) -> Result<Vec<Setting>, Exit> {
     let (settings, complaints) = find(assignments, inputs);
     if complaints.is_empty() {
         return Ok(settings);
@@ -57,9 +57,9 @@ pub fn resolve(assignments: Vec<Assignment>, inputs: &[Port]) -> Result<Vec<Sett
     Err(Exit::InputWrong)
 }
 
-fn find(assignments: Vec<Assignment>, inputs: &[Port]) -> (Vec<Setting>, Vec<String>) {
+fn find(assignments: &[Assignment], inputs: &[Port]) -> (Vec<Setting>, Vec<String>) {
     let (mut settings, mut complaints) = (Vec::<Setting>::new(), Vec::new());
-    for Assignment { name, value } in assignments {
+    for Assignment { name, value } in assignments.iter().cloned() {
         // Deck names do not depend on case; an exact match goes first.
         let input = inputs
             .iter()
@@ -92,7 +92,7 @@ mod tests {
     }
 
     fn found(texts: &[&str]) -> (Vec<Setting>, Vec<String>) {
-        find(parse(&texts.iter().map(|t| (*t).to_owned()).collect::<Vec<_>>()), &inputs())
+        find(&parse(&texts.iter().map(|t| (*t).to_owned()).collect::<Vec<_>>()), &inputs())
     }
 
     #[test]
