@@ -7,8 +7,7 @@ use super::file::{OutputError, TextFile};
 use super::number::{push_name, push_number};
 use crate::simulation::{ContactPointResult, ContactStatus, IncrementReport, PreparedModel};
 
-const HEADER: &str =
-    "step,increment,time,pair,node,status,area,COPEN,CPRESS,CSHEAR1,CSHEAR2,CSLIP1,CSLIP2\n";
+const HEADER: &str = "step,increment,time,pair,node,status,area,COPEN,CPRESS,CSHEAR1,CSHEAR2,CSLIP1,CSLIP2\n";
 
 pub(super) struct ContactTable {
     file: TextFile,
@@ -37,16 +36,8 @@ impl ContactTable {
             let label = model.mesh.node_labels[point.node.index()];
             // Writing to a string does not fail.
             let _ = write!(text, ",{label},{}", status_code(result.status));
-            let ContactPointResult {
-                status: _,
-                clearance,
-                pressure,
-                shear,
-                slip,
-            } = *result;
-            for value in [
-                point.area, clearance, pressure, shear[0], shear[1], slip[0], slip[1],
-            ] {
+            let ContactPointResult { status: _, clearance, pressure, shear, slip } = *result;
+            for value in [point.area, clearance, pressure, shear[0], shear[1], slip[0], slip[1]] {
                 push_number(&mut text, value);
             }
             text.push('\n');

@@ -17,10 +17,7 @@ pub struct OutputError {
 impl OutputError {
     /// To be used with `map_err`.
     pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
-        move |source| Self {
-            path: path.to_owned(),
-            source,
-        }
+        move |source| Self { path: path.to_owned(), source }
     }
 }
 
@@ -35,17 +32,11 @@ impl TextFile {
     pub(super) fn create(directory: &Path, job: &str, suffix: &str) -> Result<Self, OutputError> {
         let path = directory.join(format!("{job}{suffix}"));
         let file = File::create(&path).map_err(OutputError::at(&path))?;
-        Ok(Self {
-            path,
-            writer: BufWriter::new(file),
-        })
+        Ok(Self { path, writer: BufWriter::new(file) })
     }
 
     /// Writes a block and hands it to the system.
     pub(super) fn append(&mut self, text: &str) -> Result<(), OutputError> {
-        self.writer
-            .write_all(text.as_bytes())
-            .and_then(|()| self.writer.flush())
-            .map_err(OutputError::at(&self.path))
+        self.writer.write_all(text.as_bytes()).and_then(|()| self.writer.flush()).map_err(OutputError::at(&self.path))
     }
 }

@@ -70,10 +70,8 @@ impl Frames {
         self.count += 1;
         let name = format!("{}_{:05}.vtu", self.job, self.count);
         let path = self.directory.join(&name);
-        self.write_frame(&path, prepared, fields, contact)
-            .map_err(OutputError::at(&path))?;
-        self.enter(&name, time)
-            .map_err(OutputError::at(&self.list_path))
+        self.write_frame(&path, prepared, fields, contact).map_err(OutputError::at(&path))?;
+        self.enter(&name, time).map_err(OutputError::at(&self.list_path))
     }
 
     fn write_frame(
@@ -88,24 +86,13 @@ impl Frames {
         let displacement = &fields.solution.displacement;
         let reaction = &fields.solution.reaction;
         let arrays = [
-            Array::real(
-                "U",
-                &["U1", "U2", "U3"],
-                displacement.iter().flatten().copied(),
-            ),
-            Array::real(
-                "RF",
-                &["RF1", "RF2", "RF3"],
-                reaction.iter().flatten().copied(),
-            ),
+            Array::real("U", &["U1", "U2", "U3"], displacement.iter().flatten().copied()),
+            Array::real("RF", &["RF1", "RF2", "RF3"], reaction.iter().flatten().copied()),
             // The order of symmetric tensors in VTK.
             Array::real(
                 "S",
                 &["S11", "S22", "S33", "S12", "S23", "S13"],
-                fields
-                    .stress
-                    .iter()
-                    .flat_map(|s| [s[0], s[1], s[2], s[3], s[5], s[4]]),
+                fields.stress.iter().flat_map(|s| [s[0], s[1], s[2], s[3], s[5], s[4]]),
             ),
             Array::real("S_MISES", &[], fields.stress.iter().map(mises)),
             Array::real("CPRESS", &[], surface.pressure.into_iter()),
@@ -128,14 +115,10 @@ impl Frames {
 
     /// Overwrites the tail of the list with the entry and a new tail.
     fn enter(&mut self, name: &str, time: f64) -> io::Result<()> {
-        let file = name
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('"', "&quot;");
+        let file = name.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
         let entry = format!("<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{file}\"/>\n");
         self.list.seek(SeekFrom::Start(self.list_end))?;
-        self.list
-            .write_all(format!("{entry}{PVD_TAIL}").as_bytes())?;
+        self.list.write_all(format!("{entry}{PVD_TAIL}").as_bytes())?;
         self.list_end += entry.len() as u64;
         self.list.flush()
     }
@@ -146,16 +129,9 @@ impl MeshArrays {
         let mesh = &model.mesh;
         let cells = mesh.elements.len();
         Self {
-            coordinates: Array::real(
-                "Points",
-                &["", "", ""],
-                mesh.nodes.iter().flatten().copied(),
-            ),
+            coordinates: Array::real("Points", &["", "", ""], mesh.nodes.iter().flatten().copied()),
             topology: [
-                Array::whole(
-                    "connectivity",
-                    mesh.elements.iter().flat_map(|e| e.nodes).map(|n| n.0),
-                ),
+                Array::whole("connectivity", mesh.elements.iter().flat_map(|e| e.nodes).map(|n| n.0)),
                 Array::whole("offsets", (1..=cells as u32).map(|i| 8 * i)),
                 Array::byte("types", std::iter::repeat_n(VTK_HEXAHEDRON, cells)),
             ],
@@ -244,10 +220,7 @@ mod tests {
         for (name, time) in [("job_00001.vtu", 0.5), ("job_00002.vtu", 1.0)] {
             frames.enter(name, time).unwrap();
             let text = fs::read_to_string(directory.path().join("job.pvd")).unwrap();
-            assert!(
-                text.starts_with(PVD_HEAD) && text.ends_with(PVD_TAIL),
-                "{text}"
-            );
+            assert!(text.starts_with(PVD_HEAD) && text.ends_with(PVD_TAIL), "{text}");
             assert!(text.contains(name));
             assert_eq!(text.matches("</Collection>").count(), 1);
         }

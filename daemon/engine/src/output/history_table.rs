@@ -12,27 +12,14 @@ pub(super) struct HistoryTable {
 }
 
 impl HistoryTable {
-    pub(super) fn create(
-        directory: &Path,
-        job: &str,
-        prepared: &PreparedModel,
-    ) -> Result<Self, OutputError> {
+    pub(super) fn create(directory: &Path, job: &str, prepared: &PreparedModel) -> Result<Self, OutputError> {
         let mut file = TextFile::create(directory, job, "_history.csv")?;
-        let pairs: Vec<&str> = prepared
-            .model()
-            .pairs
-            .iter()
-            .map(|p| p.name.as_str())
-            .collect();
+        let pairs: Vec<&str> = prepared.model().pairs.iter().map(|p| p.name.as_str()).collect();
         file.append(&header(&pairs, &prepared.total_set_names()))?;
         Ok(Self { file })
     }
 
-    pub(super) fn row(
-        &mut self,
-        increment: &IncrementReport,
-        history: &HistoryRow,
-    ) -> Result<(), OutputError> {
+    pub(super) fn row(&mut self, increment: &IncrementReport, history: &HistoryRow) -> Result<(), OutputError> {
         self.file.append(&row(increment, history))
     }
 }
@@ -59,39 +46,13 @@ fn row(increment: &IncrementReport, history: &HistoryRow) -> String {
     // Writing to a string does not fail.
     let _ = write!(text, "{},{}", increment.step, increment.increment);
     push_numbers(&mut text, &[increment.time, increment.increment_size]);
-    for PairTotals {
-        force,
-        force_magnitude,
-        area,
-    } in &history.pairs
-    {
+    for PairTotals { force, force_magnitude, area } in &history.pairs {
         push_numbers(&mut text, force);
         push_number(&mut text, *force_magnitude);
         push_number(&mut text, *area);
     }
-    let Energies {
-        strain,
-        kinetic,
-        external_work,
-        friction,
-        viscous,
-        contact,
-        impact_loss,
-        total,
-    } = history.energies;
-    push_numbers(
-        &mut text,
-        &[
-            strain,
-            kinetic,
-            external_work,
-            friction,
-            viscous,
-            contact,
-            impact_loss,
-            total,
-        ],
-    );
+    let Energies { strain, kinetic, external_work, friction, viscous, contact, impact_loss, total } = history.energies;
+    push_numbers(&mut text, &[strain, kinetic, external_work, friction, viscous, contact, impact_loss, total]);
     for reaction in &history.reactions {
         push_numbers(&mut text, reaction);
     }
@@ -106,41 +67,21 @@ mod tests {
     #[test]
     fn rows_have_a_value_for_every_column() {
         let header = header(&["S_M", "A_B"], &["NTOP"]);
-        assert!(header.starts_with(
-            "step,increment,time,dt,CFN1[S_M],CFN2[S_M],CFN3[S_M],CFNM[S_M],CAREA[S_M],CFN1[A_B]"
-        ));
+        assert!(
+            header.starts_with("step,increment,time,dt,CFN1[S_M],CFN2[S_M],CFN3[S_M],CFNM[S_M],CAREA[S_M],CFN1[A_B]")
+        );
         assert!(header.ends_with("IMPACT_LOSS,ETOTAL,RF1[NTOP],RF2[NTOP],RF3[NTOP]\n"));
-        let energies = Energies {
-            contact: 6.0,
-            total: 8.0,
-            ..Default::default()
-        };
+        let energies = Energies { contact: 6.0, total: 8.0, ..Default::default() };
         let history = HistoryRow {
-            pairs: vec![
-                PairTotals {
-                    force: [1.0, 2.0, 3.0],
-                    force_magnitude: 4.0,
-                    area: 5.0
-                };
-                2
-            ],
+            pairs: vec![PairTotals { force: [1.0, 2.0, 3.0], force_magnitude: 4.0, area: 5.0 }; 2],
             energies,
             reactions: vec![[7.0, 8.0, 9.0]],
         };
-        let increment = IncrementReport {
-            step: 2,
-            increment: 3,
-            time: 1.5,
-            increment_size: 0.25,
-            ..Default::default()
-        };
+        let increment =
+            IncrementReport { step: 2, increment: 3, time: 1.5, increment_size: 0.25, ..Default::default() };
         let row = row(&increment, &history);
         let columns: Vec<&str> = header.trim_end().split(',').collect();
-        let values: Vec<f64> = row
-            .trim_end()
-            .split(',')
-            .map(|v| v.parse().unwrap())
-            .collect();
+        let values: Vec<f64> = row.trim_end().split(',').map(|v| v.parse().unwrap()).collect();
         assert_eq!(columns.len(), values.len());
         let value = |name: &str| values[columns.iter().position(|c| *c == name).unwrap()];
         assert_eq!(value("time"), 1.5);

@@ -52,11 +52,7 @@ pub struct ResultWriter {
 
 impl ResultWriter {
     /// Creates the files of `job` in `directory`, which must exist; results of an earlier run of the same name are replaced.
-    pub fn create(
-        directory: &Path,
-        job: &str,
-        prepared: Arc<PreparedModel>,
-    ) -> Result<Self, OutputError> {
+    pub fn create(directory: &Path, job: &str, prepared: Arc<PreparedModel>) -> Result<Self, OutputError> {
         report::remove(directory, job)?;
         Ok(Self {
             history: HistoryTable::create(directory, job, &prepared)?,
@@ -110,29 +106,16 @@ impl ResultWriter {
         }
         let fields = plan.needs_solution().then(|| {
             let solution = simulation.recover();
-            let stress = if plan.needs_stress() {
-                simulation.nodal_stress(&solution)
-            } else {
-                Vec::new()
-            };
+            let stress = if plan.needs_stress() { simulation.nodal_stress(&solution) } else { Vec::new() };
             NodalFields { solution, stress }
         });
         if let Some(fields) = &fields {
-            self.nodes
-                .rows(model, increment, &plan.node_rows, &fields.solution)?;
+            self.nodes.rows(model, increment, &plan.node_rows, &fields.solution)?;
             if plan.frame {
-                self.frames
-                    .write(&prepared, increment.time, fields, contact)?;
+                self.frames.write(&prepared, increment.time, fields, contact)?;
             }
         }
-        self.printed.write(
-            &prepared,
-            increment,
-            &plan,
-            &history,
-            contact,
-            fields.as_ref(),
-        )
+        self.printed.write(&prepared, increment, &plan, &history, contact, fields.as_ref())
     }
 }
 
@@ -145,11 +128,7 @@ impl Watch for ResultWriter {
             // The clock of a step is a sum of increments; its end is hit to rounding.
             report.step_time >= period(&step.procedure) * (1.0 - 1e-9)
         });
-        let moment = if last {
-            Moment::LastOfStep
-        } else {
-            Moment::Within
-        };
+        let moment = if last { Moment::LastOfStep } else { Moment::Within };
         self.unfinished = (!last).then(|| report.clone());
         if let Err(error) = self.write(simulation, report, moment) {
             self.error = Some(error);

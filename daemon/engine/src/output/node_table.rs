@@ -8,8 +8,7 @@ use super::number::{push_number, push_numbers};
 use crate::model::{Model, SetId};
 use crate::simulation::{IncrementReport, NodalSolution};
 
-const HEADER: &str =
-    "step,increment,time,node,U1,U2,U3,UR1,UR2,UR3,V1,V2,V3,A1,A2,A3,RF1,RF2,RF3,RM1,RM2,RM3\n";
+const HEADER: &str = "step,increment,time,node,U1,U2,U3,UR1,UR2,UR3,V1,V2,V3,A1,A2,A3,RF1,RF2,RF3,RM1,RM2,RM3\n";
 
 pub(super) struct NodeTable {
     file: TextFile,
@@ -22,11 +21,7 @@ impl NodeTable {
     pub(super) fn create(directory: &Path, job: &str) -> Result<Self, OutputError> {
         let mut file = TextFile::create(directory, job, "_nodes.csv")?;
         file.append(HEADER)?;
-        Ok(Self {
-            file,
-            written: Vec::new(),
-            write: 0,
-        })
+        Ok(Self { file, written: Vec::new(), write: 0 })
     }
 
     /// Rotations, velocities, accelerations and moments do not exist in a static solution of solids: empty.
@@ -74,26 +69,13 @@ mod tests {
         let mut model = Model::default();
         model.mesh.nodes = vec![[0.0; 3]; 3];
         model.mesh.node_labels = vec![10, 20, 30];
-        let set = |nodes: &[u32]| NodeSet {
-            name: "N".into(),
-            nodes: nodes.iter().map(|&n| NodeId(n)).collect(),
-        };
+        let set = |nodes: &[u32]| NodeSet { name: "N".into(), nodes: nodes.iter().map(|&n| NodeId(n)).collect() };
         model.mesh.node_sets = vec![set(&[0, 1]), set(&[1, 2])];
-        let solution = NodalSolution {
-            displacement: vec![[0.5, 0.25, -1.0]; 3],
-            reaction: vec![[0.0, 0.0, 8.0]; 3],
-        };
+        let solution = NodalSolution { displacement: vec![[0.5, 0.25, -1.0]; 3], reaction: vec![[0.0, 0.0, 8.0]; 3] };
         let mut table = NodeTable::create(directory.path(), "job").unwrap();
-        let increment = IncrementReport {
-            step: 1,
-            increment: 2,
-            time: 0.5,
-            ..Default::default()
-        };
+        let increment = IncrementReport { step: 1, increment: 2, time: 0.5, ..Default::default() };
         for _ in 0..2 {
-            table
-                .rows(&model, &increment, &[SetId(0), SetId(1)], &solution)
-                .unwrap();
+            table.rows(&model, &increment, &[SetId(0), SetId(1)], &solution).unwrap();
         }
         let text = std::fs::read_to_string(directory.path().join("job_nodes.csv")).unwrap();
         let lines: Vec<&str> = text.lines().collect();
@@ -103,10 +85,7 @@ mod tests {
         assert_eq!(fields.len(), columns.len());
         assert_eq!(&fields[..2], ["1", "2"]);
         let at = |name: &str| fields[columns.iter().position(|c| *c == name).unwrap()];
-        assert_eq!(
-            (at("node"), at("U3"), at("RF3")),
-            ("30", "-1.0000000000000000e0", "8.0000000000000000e0")
-        );
+        assert_eq!((at("node"), at("U3"), at("RF3")), ("30", "-1.0000000000000000e0", "8.0000000000000000e0"));
         for absent in ["UR1", "UR3", "V1", "V3", "A1", "A3", "RM1", "RM3"] {
             assert_eq!(at(absent), "", "{absent}");
         }

@@ -49,27 +49,12 @@ mod tests {
 
     #[test]
     fn numbers_keep_their_bits() {
-        for value in [
-            0.0,
-            -0.0,
-            1.0,
-            -1.0 / 3.0,
-            f64::MAX,
-            f64::MIN_POSITIVE,
-            5e-324,
-            0.1 + 0.2,
-        ] {
+        for value in [0.0, -0.0, 1.0, -1.0 / 3.0, f64::MAX, f64::MIN_POSITIVE, 5e-324, 0.1 + 0.2] {
             let mut row = String::new();
             push_number(&mut row, value);
             let read: f64 = row.strip_prefix(',').unwrap().parse().unwrap();
             assert_eq!(read.to_bits(), value.to_bits(), "{row}");
-            let digits = row
-                .split('e')
-                .next()
-                .unwrap()
-                .chars()
-                .filter(char::is_ascii_digit)
-                .count();
+            let digits = row.split('e').next().unwrap().chars().filter(char::is_ascii_digit).count();
             assert_eq!(digits, 17, "{row}");
         }
     }

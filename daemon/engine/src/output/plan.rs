@@ -1,8 +1,6 @@
 //! What the output requests of a step ask for at one increment.
 
-use crate::model::{
-    ContactRequest, ElementRequest, NodeRequest, OutputTarget, SetId, Step, Totals,
-};
+use crate::model::{ContactRequest, ElementRequest, NodeRequest, OutputTarget, SetId, Step, Totals};
 
 /// When the question is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,11 +48,7 @@ impl<'a> Plan<'a> {
             .collect();
         let contacts: Vec<u32> = requests.contacts.iter().map(|r| r.frequency).collect();
         let mut node_rows = Vec::new();
-        for request in requests
-            .nodes
-            .iter()
-            .filter(|r| due(r.frequency) && r.totals != Totals::Only)
-        {
+        for request in requests.nodes.iter().filter(|r| due(r.frequency) && r.totals != Totals::Only) {
             if let Some(set) = request.set
                 && !node_rows.contains(&set)
             {
@@ -86,9 +80,7 @@ impl<'a> Plan<'a> {
 
     /// Whether nodal values are needed.
     pub(super) fn needs_solution(&self) -> bool {
-        self.needs_stress()
-            || !self.node_rows.is_empty()
-            || self.node_prints.iter().any(|r| r.totals != Totals::Only)
+        self.needs_stress() || !self.node_rows.is_empty() || self.node_prints.iter().any(|r| r.totals != Totals::Only)
     }
 
     /// Whether stresses are needed.
@@ -108,9 +100,7 @@ fn is_due(frequency: u32, increment: u32, moment: Moment) -> bool {
 
 /// Whether something that several requests share is due. A step that does not mention it gets it once, at its end.
 fn any_due(frequencies: &[u32], increment: u32, moment: Moment) -> bool {
-    let regular = frequencies
-        .iter()
-        .any(|&f| is_due(f, increment, Moment::Within));
+    let regular = frequencies.iter().any(|&f| is_due(f, increment, Moment::Within));
     let wanted = frequencies.is_empty() || frequencies.iter().any(|&f| f != 0);
     match moment {
         Moment::Within => regular,
@@ -145,45 +135,23 @@ mod tests {
         }
     }
 
-    fn nodes(
-        target: OutputTarget,
-        set: Option<SetId>,
-        frequency: u32,
-        totals: Totals,
-    ) -> NodeRequest {
-        NodeRequest {
-            target,
-            set,
-            variables: vec!["U".into()],
-            frequency,
-            totals,
-        }
+    fn nodes(target: OutputTarget, set: Option<SetId>, frequency: u32, totals: Totals) -> NodeRequest {
+        NodeRequest { target, set, variables: vec!["U".into()], frequency, totals }
     }
 
     #[test]
     fn a_silent_step_writes_contact_and_frame_once_at_its_end() {
         let step = step(OutputRequests::default());
-        for (moment, expected) in [
-            (Moment::Within, false),
-            (Moment::LastOfStep, true),
-            (Moment::Stopped, true),
-        ] {
+        for (moment, expected) in [(Moment::Within, false), (Moment::LastOfStep, true), (Moment::Stopped, true)] {
             let plan = Plan::new(&step, 3, moment);
-            assert_eq!(
-                (plan.contact_rows, plan.frame),
-                (expected, expected),
-                "{moment:?}"
-            );
+            assert_eq!((plan.contact_rows, plan.frame), (expected, expected), "{moment:?}");
         }
     }
 
     #[test]
     fn frequency_counts_increments_and_the_last_is_always_written() {
         let request = nodes(OutputTarget::Field, Some(SetId(2)), 5, Totals::No);
-        let step = step(OutputRequests {
-            nodes: vec![request],
-            ..Default::default()
-        });
+        let step = step(OutputRequests { nodes: vec![request], ..Default::default() });
         for (increment, moment, expected) in [
             (4, Moment::Within, false),
             (5, Moment::Within, true),
@@ -193,20 +161,14 @@ mod tests {
         ] {
             let plan = Plan::new(&step, increment, moment);
             assert_eq!(plan.frame, expected, "{increment} {moment:?}");
-            assert_eq!(
-                plan.node_rows,
-                if expected { vec![SetId(2)] } else { vec![] }
-            );
+            assert_eq!(plan.node_rows, if expected { vec![SetId(2)] } else { vec![] });
         }
     }
 
     #[test]
     fn frequency_zero_never_writes() {
         let request = nodes(OutputTarget::Field, None, 0, Totals::No);
-        let step = step(OutputRequests {
-            nodes: vec![request],
-            ..Default::default()
-        });
+        let step = step(OutputRequests { nodes: vec![request], ..Default::default() });
         for moment in [Moment::Within, Moment::LastOfStep, Moment::Stopped] {
             assert!(!Plan::new(&step, 1, moment).frame, "{moment:?}");
         }
@@ -215,10 +177,7 @@ mod tests {
     #[test]
     fn totals_alone_need_no_recovery() {
         let request = nodes(OutputTarget::Print, Some(SetId(0)), 1, Totals::Only);
-        let step = step(OutputRequests {
-            nodes: vec![request],
-            ..Default::default()
-        });
+        let step = step(OutputRequests { nodes: vec![request], ..Default::default() });
         let plan = Plan::new(&step, 1, Moment::Within);
         assert_eq!(plan.node_prints.len(), 1);
         assert!(!plan.needs_solution());

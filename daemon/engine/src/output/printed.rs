@@ -8,9 +8,7 @@ use super::file::{OutputError, TextFile};
 use super::number::printed;
 use super::plan::Plan;
 use super::{NodalFields, period, step_of};
-use crate::model::{
-    ElementRequest, Model, NodeId, NodeRequest, Procedure, Step, SurfaceId, Totals,
-};
+use crate::model::{ElementRequest, Model, NodeId, NodeRequest, Procedure, Step, SurfaceId, Totals};
 use crate::simulation::{ContactPointResult, HistoryRow, IncrementReport, PreparedModel};
 
 /// Writes the summary of an increment and the tables that are due.
@@ -23,23 +21,11 @@ pub(super) struct Printed {
 }
 
 impl Printed {
-    pub(super) fn create(
-        directory: &Path,
-        job: &str,
-        prepared: &PreparedModel,
-    ) -> Result<Self, OutputError> {
+    pub(super) fn create(directory: &Path, job: &str, prepared: &PreparedModel) -> Result<Self, OutputError> {
         let mut file = TextFile::create(directory, job, ".dat")?;
         file.append(&title(prepared))?;
-        let total_sets = prepared
-            .total_set_names()
-            .into_iter()
-            .map(str::to_owned)
-            .collect();
-        Ok(Self {
-            file,
-            step: 0,
-            total_sets,
-        })
+        let total_sets = prepared.total_set_names().into_iter().map(str::to_owned).collect();
+        Ok(Self { file, step: 0, total_sets })
     }
 
     pub(super) fn write(
@@ -51,9 +37,7 @@ impl Printed {
         contact: &[ContactPointResult],
         fields: Option<&NodalFields>,
     ) -> Result<(), OutputError> {
-        let tables = !(plan.node_prints.is_empty()
-            && plan.element_prints.is_empty()
-            && plan.contact_prints.is_empty());
+        let tables = !(plan.node_prints.is_empty() && plan.element_prints.is_empty() && plan.contact_prints.is_empty());
         let model = prepared.model();
         let Some(step) = step_of(model, increment).filter(|_| tables || plan.end) else {
             return Ok(());
@@ -91,10 +75,7 @@ impl Printed {
         fields: Option<&NodalFields>,
     ) {
         let set = request.set.map(|set| &model.mesh.node_sets[set.index()]);
-        let whom = set.map_or_else(
-            || "ALL NODES".to_owned(),
-            |s| format!("NODES OF NODE SET {}", s.name),
-        );
+        let whom = set.map_or_else(|| "ALL NODES".to_owned(), |s| format!("NODES OF NODE SET {}", s.name));
         let everything: Vec<NodeId>;
         let nodes = match set {
             Some(set) => &set.nodes,
@@ -104,9 +85,7 @@ impl Printed {
             }
         };
         for variable in &request.variables {
-            let totals = (variable == "RF")
-                .then(|| set.and_then(|s| self.total(&s.name, history)))
-                .flatten();
+            let totals = (variable == "RF").then(|| set.and_then(|s| self.total(&s.name, history))).flatten();
             if request.totals != Totals::Only
                 && let Some(fields) = fields
             {
@@ -116,17 +95,9 @@ impl Printed {
                     _ => continue,
                 };
                 let columns = [1, 2, 3].map(|i| format!("{variable}{i}"));
-                let mut table = Table::new(
-                    &format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}"),
-                    None,
-                    &columns,
-                );
+                let mut table = Table::new(&format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}"), None, &columns);
                 for node in nodes {
-                    table.row(
-                        model.mesh.node_labels[node.index()],
-                        None,
-                        &values[node.index()],
-                    );
+                    table.row(model.mesh.node_labels[node.index()], None, &values[node.index()]);
                 }
                 table.finish(text);
             }
@@ -141,10 +112,7 @@ impl Printed {
     }
 
     fn total(&self, set: &str, history: &HistoryRow) -> Option<[f64; 3]> {
-        let i = self
-            .total_sets
-            .iter()
-            .position(|name| name.eq_ignore_ascii_case(set))?;
+        let i = self.total_sets.iter().position(|name| name.eq_ignore_ascii_case(set))?;
         history.reactions.get(i).copied()
     }
 }
@@ -174,45 +142,20 @@ fn step_heading(text: &mut String, step: &Step, increment: &IncrementReport) {
         Procedure::Static(_) => "STATIC ANALYSIS",
     };
     let spaced: String = procedure.chars().flat_map(|c| [c, ' ']).collect();
-    let _ = writeln!(
-        text,
-        "\n\n                    S T E P   {:>5}     {spaced}\n\n   {}",
-        increment.step, step.name
-    );
+    let _ = writeln!(text, "\n\n                    S T E P   {:>5}     {spaced}\n\n   {}", increment.step, step.name);
 }
 
 fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
-    let _ = writeln!(
-        text,
-        "\n\n                              INCREMENT {:>5} SUMMARY\n",
-        increment.increment
-    );
+    let _ = writeln!(text, "\n\n                              INCREMENT {:>5} SUMMARY\n", increment.increment);
     let pair = |text: &mut String, a: &str, x: f64, b: &str, y: f64| {
         let _ = writeln!(text, " {a:<26}{},  {b:<28}{}", printed(x), printed(y));
     };
     let fraction = increment.step_time / period(&step.procedure);
-    pair(
-        text,
-        "TIME INCREMENT COMPLETED",
-        increment.increment_size,
-        "FRACTION OF STEP COMPLETED",
-        fraction,
-    );
-    pair(
-        text,
-        "STEP TIME COMPLETED",
-        increment.step_time,
-        "TOTAL TIME COMPLETED",
-        increment.time,
-    );
+    pair(text, "TIME INCREMENT COMPLETED", increment.increment_size, "FRACTION OF STEP COMPLETED", fraction);
+    pair(text, "STEP TIME COMPLETED", increment.step_time, "TOTAL TIME COMPLETED", increment.time);
 }
 
-fn contact_tables(
-    text: &mut String,
-    prepared: &PreparedModel,
-    history: &HistoryRow,
-    contact: &[ContactPointResult],
-) {
+fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &HistoryRow, contact: &[ContactPointResult]) {
     let model = prepared.model();
     text.push_str("\n\n                              C O N T A C T   O U T P U T\n");
     let columns = ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"].map(String::from);
@@ -224,38 +167,16 @@ fn contact_tables(
             name(pair.primary)
         );
         let mut table = Table::new(&heading, Some("STATUS"), &columns);
-        for (point, result) in prepared
-            .contact_points()
-            .iter()
-            .zip(contact)
-            .filter(|(p, _)| p.pair as usize == i)
-        {
-            let ContactPointResult {
-                status,
-                clearance,
-                pressure,
-                shear,
-                slip,
-            } = *result;
+        for (point, result) in prepared.contact_points().iter().zip(contact).filter(|(p, _)| p.pair as usize == i) {
+            let ContactPointResult { status, clearance, pressure, shear, slip } = *result;
             let values = [pressure, shear[0], shear[1], clearance, slip[0], slip[1]];
-            table.row(
-                model.mesh.node_labels[point.node.index()],
-                Some(status_code(status)),
-                &values,
-            );
+            table.row(model.mesh.node_labels[point.node.index()], Some(status_code(status)), &values);
         }
         table.finish(text);
         if let Some(totals) = history.pairs.get(i) {
-            let _ = writeln!(
-                text,
-                "\n   TOTAL FORCE DUE TO CONTACT PRESSURE AND AREA IN CONTACT\n"
-            );
+            let _ = writeln!(text, "\n   TOTAL FORCE DUE TO CONTACT PRESSURE AND AREA IN CONTACT\n");
             let names = ["CFN1", "CFN2", "CFN3", "CFNM", "CAREA"];
-            let _ = writeln!(
-                text,
-                "            {}",
-                names.map(|n| format!("{n:>15}")).concat()
-            );
+            let _ = writeln!(text, "            {}", names.map(|n| format!("{n:>15}")).concat());
             let [x, y, z] = totals.force;
             let values = [x, y, z, totals.force_magnitude, totals.area];
             let _ = writeln!(text, "      TOTAL {}", values.map(printed).concat());
@@ -268,26 +189,17 @@ fn stress_table(text: &mut String, model: &Model, request: &ElementRequest, stre
         return;
     }
     let mesh = &model.mesh;
-    let (whom, mut nodes): (String, Vec<NodeId>) =
-        match request.set.map(|s| &mesh.element_sets[s.index()]) {
-            Some(set) => (
-                format!("ELEMENT SET {}", set.name),
-                set.elements
-                    .iter()
-                    .flat_map(|e| mesh.elements[e.index()].nodes)
-                    .collect(),
-            ),
-            None => (
-                "ALL ELEMENTS".to_owned(),
-                mesh.elements.iter().flat_map(|e| e.nodes).collect(),
-            ),
-        };
+    let (whom, mut nodes): (String, Vec<NodeId>) = match request.set.map(|s| &mesh.element_sets[s.index()]) {
+        Some(set) => (
+            format!("ELEMENT SET {}", set.name),
+            set.elements.iter().flat_map(|e| mesh.elements[e.index()].nodes).collect(),
+        ),
+        None => ("ALL ELEMENTS".to_owned(), mesh.elements.iter().flat_map(|e| e.nodes).collect()),
+    };
     nodes.sort_unstable();
     nodes.dedup();
     let columns = ["S11", "S22", "S33", "S12", "S13", "S23"].map(String::from);
-    let heading = format!(
-        "THE FOLLOWING TABLE IS PRINTED FOR THE NODES OF {whom} (STRESSES AVERAGED AT NODES)"
-    );
+    let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR THE NODES OF {whom} (STRESSES AVERAGED AT NODES)");
     let mut table = Table::new(&heading, None, &columns);
     for node in nodes {
         table.row(mesh.node_labels[node.index()], None, &stress[node.index()]);
@@ -313,11 +225,7 @@ impl Table {
             let _ = write!(text, "{column:>15}");
         }
         text.push_str("\n\n");
-        Self {
-            text,
-            status: status.is_some(),
-            extremes: Vec::new(),
-        }
+        Self { text, status: status.is_some(), extremes: Vec::new() }
     }
 
     fn row(&mut self, label: u32, status: Option<&str>, values: &[f64]) {

@@ -87,12 +87,7 @@ pub struct StepSummary {
 
 impl From<StepReport> for StepSummary {
     fn from(report: StepReport) -> Self {
-        let StepReport {
-            name,
-            procedure,
-            time_reached,
-            counts,
-        } = report;
+        let StepReport { name, procedure, time_reached, counts } = report;
         let WorkCounts {
             increments,
             equilibrium_iterations,
@@ -132,13 +127,7 @@ pub struct Finding {
 
 impl From<&Diagnostic> for Finding {
     fn from(diagnostic: &Diagnostic) -> Self {
-        let Diagnostic {
-            severity,
-            place,
-            keyword,
-            message,
-            remedy,
-        } = diagnostic;
+        let Diagnostic { severity, place, keyword, message, remedy } = diagnostic;
         Self {
             severity: *severity,
             file: place.file.as_deref().cloned(),
@@ -162,10 +151,7 @@ pub fn write_report(directory: &Path, job: &str, report: &RunReport) -> Result<(
 pub(super) fn remove(directory: &Path, job: &str) -> Result<(), OutputError> {
     let path = report_path(directory, job);
     match fs::remove_file(&path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(OutputError {
-            path,
-            source: error,
-        }),
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(OutputError { path, source: error }),
         Ok(()) | Err(_) => Ok(()),
     }
 }

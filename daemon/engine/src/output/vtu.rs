@@ -42,42 +42,22 @@ impl Array {
         values: impl Iterator<Item = f64>,
     ) -> Self {
         let bytes = values.flat_map(f64::to_le_bytes).collect();
-        Self {
-            name,
-            kind: Kind::Float64,
-            components,
-            bytes,
-        }
+        Self { name, kind: Kind::Float64, components, bytes }
     }
 
     /// Of whole numbers.
     pub(super) fn whole(name: &'static str, values: impl Iterator<Item = u32>) -> Self {
-        Self {
-            name,
-            kind: Kind::Int32,
-            components: &[],
-            bytes: values.flat_map(u32::to_le_bytes).collect(),
-        }
+        Self { name, kind: Kind::Int32, components: &[], bytes: values.flat_map(u32::to_le_bytes).collect() }
     }
 
     /// Of small signed numbers.
     pub(super) fn small(name: &'static str, values: impl Iterator<Item = i8>) -> Self {
-        Self {
-            name,
-            kind: Kind::Int8,
-            components: &[],
-            bytes: values.flat_map(i8::to_le_bytes).collect(),
-        }
+        Self { name, kind: Kind::Int8, components: &[], bytes: values.flat_map(i8::to_le_bytes).collect() }
     }
 
     /// Of bytes.
     pub(super) fn byte(name: &'static str, values: impl Iterator<Item = u8>) -> Self {
-        Self {
-            name,
-            kind: Kind::UInt8,
-            components: &[],
-            bytes: values.collect(),
-        }
+        Self { name, kind: Kind::UInt8, components: &[], bytes: values.collect() }
     }
 }
 
@@ -101,11 +81,7 @@ impl Grid<'_> {
             "<UnstructuredGrid>\n",
         ));
         // Writing to a string does not fail.
-        let _ = writeln!(
-            head,
-            "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">",
-            self.points, self.cells
-        );
+        let _ = writeln!(head, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", self.points, self.cells);
         let mut arrays: Vec<&Array> = Vec::new();
         let mut offset = 0;
         let sections: [(&str, &[&Array]); 4] = [
@@ -136,20 +112,10 @@ impl Grid<'_> {
 }
 
 fn declare(head: &mut String, array: &Array, offset: usize) {
-    let _ = write!(
-        head,
-        "<DataArray type=\"{}\" Name=\"{}\"",
-        array.kind.name(),
-        array.name
-    );
+    let _ = write!(head, "<DataArray type=\"{}\" Name=\"{}\"", array.kind.name(), array.name);
     if !array.components.is_empty() {
         let _ = write!(head, " NumberOfComponents=\"{}\"", array.components.len());
-        for (i, name) in array
-            .components
-            .iter()
-            .enumerate()
-            .filter(|(_, name)| !name.is_empty())
-        {
+        for (i, name) in array.components.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
             let _ = write!(head, " ComponentName{i}=\"{name}\"");
         }
     }
