@@ -13,15 +13,15 @@ import argparse
 import csv
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-
-sys.path[:0] = [str(Path(__file__).resolve().parent)]
 
 import generate_deck
 
@@ -58,6 +58,15 @@ class Job:
         """Name of the deck without extension."""
         return self.deck.stem
 
+    @property
+    def drive(self):
+        """Name of the input: the prescribed displacement of NTOP."""
+        return f"boundary.NTOP.{generate_deck.PROBLEMS[self.kind].direction}"
+
+    def displacement(self, at):
+        """Displacement of NTOP at a time: the deck's ramp, here applied by the master."""
+        return generate_deck.PROBLEMS[self.kind].displacement * at
+
     def final(self, output):
         """Value of an output at the end, by the command line."""
         return self.answers[WAYS[0]].outputs[output][-1]
@@ -89,18 +98,18 @@ def by_command_line(job, folder):
 
 
 def by_daemon(job, client, times):
-    """A session of the daemon: one request per increment, all outputs in the reply."""
+    """A session of the daemon: one request per increment, input in, all outputs in the reply."""
     started = time.perf_counter()
-    with client.open(job.deck.read_text(encoding="ascii")) as session:
+    with client.open(job.deck) as session:
         opened = time.perf_counter()
-        replies = [session.step(target) for target in times]
+        replies = [session.step(t, inputs={job.drive: job.displacement(t)}) for t in times]
         ended = time.perf_counter()
-        outputs = {name: [reply.outputs[name] for reply in replies] for name in session.output_names}
+        outputs = {name: [reply.outputs[name] for reply in replies] for name in session.outputs}
         return Answer([reply.time for reply in replies], outputs, opened - started, ended - opened)
 
 
 def by_fmu(job, folder, times):
-    """The packed FMU: `fmi2DoStep` per increment, all outputs read after each."""
+    """The packed FMU: per increment, set the input, `fmi2DoStep`, read all outputs."""
     import fmpy
     from fmpy.fmi2 import FMU2Slave
 
@@ -108,6 +117,7 @@ def by_fmu(job, folder, times):
     subprocess.run([binary(), "pack", job.deck, "-o", fmu], check=True, stdout=subprocess.DEVNULL)
     description = fmpy.read_model_description(fmu)
     variables = [v for v in description.modelVariables if v.causality == "output"]
+    (drive,) = [v.valueReference for v in description.modelVariables if v.name == job.drive]
     unzipped = fmpy.extract(fmu)
     try:
         started = time.perf_counter()
@@ -128,6 +138,7 @@ def by_fmu(job, folder, times):
             step = target - now
             if now + step != target:
                 raise SystemExit(f"{target} cannot be reached exactly from {now}")
+            instance.setReal([drive], [job.displacement(target)])
             instance.doStep(currentCommunicationPoint=now, communicationStepSize=step)
             now = target
             for variable in variables:
@@ -139,6 +150,29 @@ def by_fmu(job, folder, times):
     finally:
         shutil.rmtree(unzipped, ignore_errors=True)
     return Answer(list(times), outputs, ready - started, ended - ready)
+
+
+@contextmanager
+def running_daemon(folder):
+    """A daemon on a free port of the loopback; yields its endpoint and stops it by SIGTERM."""
+    with open(folder / "daemon.log", "wb") as log:
+        process = subprocess.Popen(
+            [binary(), "serve", "--listen", "tcp/127.0.0.1:0"], stdout=subprocess.PIPE, stderr=log, text=True
+        )
+        try:
+            # The first line says what is bound; end of file says that it did not start.
+            found = re.search(r"listens on (tcp/\S+?)(,|$)", process.stdout.readline().strip())
+            if found is None:
+                raise SystemExit(f"the daemon did not start; see {folder / 'daemon.log'}")
+            yield found.group(1)
+        finally:
+            process.terminate()
+            try:
+                process.wait(timeout=30)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                raise
 
 
 def bits(value):
@@ -180,13 +214,18 @@ def solve(out, jobs, endpoint):
 
 def table(jobs):
     """The table at the end, as lines."""
-    lines = [f"{'deck':10} {'solved by':17} {'force':>12} {'contact area':>13} {'max pressure':>13} {'set-up s':>9} {'20 incr. s':>11}  equal bits"]
+    lines = [
+        f"{'deck':10} {'solved by':17} {'force':>12} {'contact area':>13} {'max pressure':>13} {'set-up s':>9} {'20 incr. s':>11}  equal bits"
+    ]
     for job in jobs:
         direction = generate_deck.PROBLEMS[job.kind].direction
         for way in WAYS:
             answer = job.answers[way]
             same = "-" if way == WAYS[0] else "no" if any(d.startswith(way) for d in job.differences) else "yes"
-            values = [answer.outputs[n][-1] for n in (f"node.NTOP.RF{direction}", f"contact.{PAIR}.CAREA", f"contact.{PAIR}.CPRESS_max")]
+            values = [
+                answer.outputs[n][-1]
+                for n in (f"node.NTOP.RF{direction}", f"contact.{PAIR}.CAREA", f"contact.{PAIR}.CPRESS_max")
+            ]
             lines.append(
                 f"{job.name:10} {way:17} {values[0]:12.4f} {values[1]:13.6f} {values[2]:13.4f} {answer.setup:9.3f} {answer.increments:11.4f}  {same}"
             )

@@ -84,7 +84,8 @@ def measure(report, deck, oracle, solutions, result):
         order[f"SEC{pair + 1}_PRI{pair + 1}", node + 1] = index
     scale = {
         "pressure": max(np.abs(s.pressure).max() for s in solutions),
-        "clearance": max(np.abs(s.overclosure).max() for s in solutions),
+        # Closed hard points have no clearance but rounding: displacements are what it is small against.
+        "clearance": max(max(np.abs(s.overclosure).max(), np.abs(s.displacement).max()) for s in solutions),
         "displacement": max(np.abs(s.displacement).max() for s in solutions),
         "reaction": max(np.abs(s.reaction).max() for s in solutions),
         "pair force": max(np.abs(s.pair_forces).max() for s in solutions),

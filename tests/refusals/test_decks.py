@@ -40,7 +40,7 @@ REFUSALS = [
     Refusal("missing section", "*SOLID SECTION, ELSET=UPPER, MATERIAL=RUBBER\n", "", "", ("2", "section")),
     Refusal("material without stiffness", "*ELASTIC\n1000., 0.3\n", "", "*MATERIAL", ("RUBBER", "*ELASTIC")),
     Refusal("inverted element", "2, 11, 12, 13, 14, 15", "2, 11, 14, 13, 12, 15", "*ELEMENT", ("2",)),
-    Refusal("flat element", "18, 0.1, 1.1, 2.0", "18, 0.1, 1.1, 1.005", "*ELEMENT", ("2",)),
+    Refusal("element without volume", "14, 15, 16, 17, 18\n*NSET", "14, 11, 12, 13, 14\n*NSET", "*ELEMENT", ("2",)),
     Refusal("node twice, elsewhere", "18, 0.1, 1.1, 2.0", "18, 0.1, 1.1, 2.0\n18, 0.1, 1.2, 2.0", "*NODE", ("18",)),
     Refusal(
         "unknown node in an element",
@@ -62,13 +62,26 @@ REFUSALS = [
         "*SURFACE BEHAVIOR",
         ("SEPARATION",),
     ),
-    Refusal("keyword that changes the answer", "*STEP\n", "*FRICTION\n0.2\n*STEP\n", "*FRICTION", ("not supported",)),
+    Refusal("friction", "*CONTACT PAIR, INT", "*FRICTION\n0.2\n*CONTACT PAIR, INT", "*FRICTION", ("without friction",)),
+    Refusal(
+        "keyword that changes the answer",
+        "*STEP\n",
+        "*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*STEP\n",
+        "*EQUATION",
+        ("C3D8",),
+    ),
     Refusal(
         "element that cannot be solved", "TYPE=C3D8, ELSET=UPPER", "TYPE=C3D20, ELSET=UPPER", "*ELEMENT", ("C3D20",)
     ),
     Refusal("no step", "*STEP\n", "** \n", "", ("*STEP",)),
-    Refusal("body that nothing holds", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "15, 3, 3, -0.02\n", "", ("UPPER",)),
-    Refusal("both bodies free", "NBOT, 1, 3\n", "1, 1, 3\n", "", ("LOWER",)),
+]
+
+
+# What the mesh alone does not tell: found when the model is prepared.
+UNHELD = [
+    Refusal("body that nothing holds", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "NBOT, 3, 3, -0.02\n", "", ("UPPER",)),
+    Refusal("body held by one node", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "15, 3, 3, -0.02\n", "", ("UPPER", "contact")),
+    Refusal("lower body held by one node", "NBOT, 1, 3\n", "1, 1, 3\n", "", ("LOWER", "contact")),
 ]
 
 
@@ -98,6 +111,14 @@ def test_refused_with_exit_code_2_and_a_clear_message(write_deck, tmp_path, refu
         pattern = rf"deck\.inp:\d+: error: {re.escape(refusal.keyword)}"
         assert re.search(pattern, message), message
     assert not list(tmp_path.glob("out/*.csv")), "a refused deck leaves no results"
+
+
+@pytest.mark.parametrize("refusal", UNHELD, ids=lambda r: r.name.replace(" ", "_"))
+def test_a_body_that_can_move_is_refused_by_name(write_deck, tmp_path, refusal):
+    message = read(support.call("run", write_deck(changed(refusal)), "--out", tmp_path / "out", "--quiet"))
+    for word in refusal.words:
+        assert word in message, message
+    assert not list(tmp_path.glob("out/*.csv"))
 
 
 def test_the_unchanged_deck_is_accepted(write_deck, tmp_path):
