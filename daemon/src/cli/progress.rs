@@ -1,5 +1,6 @@
 //! What a person at a terminal sees while a run goes on: a bar on stderr, the increments table on stdout.
 
+use std::cell::Cell;
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -21,7 +22,16 @@ const TICKS: u64 = 1000;
 pub struct Progress {
     bar: ProgressBar,
     quiet: bool,
-    table_begun: std::cell::Cell<bool>,
+    table: Cell<Table>,
+}
+
+/// What has become of the increments table.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Table {
+    Awaited,
+    Begun,
+    /// Unwanted, or stdout cannot be written.
+    Off,
 }
 
 impl Progress {
@@ -37,7 +47,7 @@ impl Progress {
         if visible {
             bar.enable_steady_tick(std::time::Duration::from_millis(120));
         }
-        Self { bar, quiet, table_begun: std::cell::Cell::new(false) }
+        Self { bar, quiet, table: Cell::new(if quiet { Table::Off } else { Table::Awaited }) }
     }
 
     /// Whether only findings are wanted.
@@ -58,11 +68,13 @@ impl Progress {
     /// A row of the table. A stdout that nobody reads any more does not end the run: its results are in files.
     pub fn increment(&self, increment: &IncrementReport, fraction: f64) {
         self.bar.set_position((fraction.clamp(0.0, 1.0) * TICKS as f64) as u64);
-        if self.quiet {
-            return;
-        }
-        let head = if self.table_begun.replace(true) { "" } else { TABLE_HEAD };
-        let _ = self.bar.suspend(|| print(&format!("{head}{}\n", row(increment))));
+        let head = match self.table.get() {
+            Table::Off => return,
+            Table::Awaited => TABLE_HEAD,
+            Table::Begun => "",
+        };
+        let written = self.bar.suspend(|| print(&format!("{head}{}\n", row(increment))));
+        self.table.set(if written.is_ok() { Table::Begun } else { Table::Off });
     }
 
     /// The bar goes.

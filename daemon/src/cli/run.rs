@@ -219,7 +219,7 @@ impl Ended {
             complain(&format!("audit: {finding}"));
         }
         if let Some(reason) = &self.reason {
-            complain(&format!("stopped at total time {}: {reason}", report.time_reached));
+            complain(&format!("stopped: {reason}"));
         }
         if !quiet {
             let total: f64 = report.wall_seconds.values().sum();
