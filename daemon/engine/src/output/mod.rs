@@ -15,6 +15,9 @@ mod printed;
 mod report;
 mod vtu;
 
+#[cfg(test)]
+mod tests;
+
 pub use file::OutputError;
 pub use report::{Finding, ModelSize, RunOutcome, RunReport, StepSummary, write_report};
 

@@ -16,6 +16,8 @@ pub(super) struct Printed {
     file: TextFile,
     /// Step whose heading was printed last.
     step: u32,
+    /// Increment of that step whose summary was printed last.
+    increment: u32,
     /// Sets whose reaction totals are in the history, in its order.
     total_sets: Vec<String>,
 }
@@ -25,7 +27,7 @@ impl Printed {
         let mut file = TextFile::create(directory, job, ".dat")?;
         file.append(&title(prepared))?;
         let total_sets = prepared.total_set_names().into_iter().map(str::to_owned).collect();
-        Ok(Self { file, step: 0, total_sets })
+        Ok(Self { file, step: 0, increment: 0, total_sets })
     }
 
     pub(super) fn write(
@@ -44,10 +46,13 @@ impl Printed {
         };
         let mut text = String::new();
         if increment.step != self.step {
-            self.step = increment.step;
+            (self.step, self.increment) = (increment.step, 0);
             step_heading(&mut text, step, increment);
         }
-        summary(&mut text, step, increment);
+        if increment.increment != self.increment {
+            self.increment = increment.increment;
+            summary(&mut text, step, increment);
+        }
         if !plan.contact_prints.is_empty() {
             contact_tables(&mut text, prepared, history, contact);
         }

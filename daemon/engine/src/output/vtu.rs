@@ -121,3 +121,56 @@ fn declare(head: &mut String, array: &Array, offset: usize) {
     }
     let _ = writeln!(head, " format=\"appended\" offset=\"{offset}\"/>");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Attribute of the n-th `DataArray`.
+    fn attribute<'a>(line: &'a str, name: &str) -> &'a str {
+        let start = line.find(&format!(" {name}=\"")).unwrap_or_else(|| panic!("no {name} in {line}")) + name.len() + 3;
+        line[start..].split('"').next().unwrap()
+    }
+
+    #[test]
+    fn offsets_and_lengths_find_every_array() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("one.vtu");
+        let coordinates = Array::real("Points", &["", "", ""], (0..24).map(f64::from));
+        let connectivity = Array::whole("connectivity", 0..8);
+        let offsets = Array::whole("offsets", std::iter::once(8));
+        let types = Array::byte("types", std::iter::once(12));
+        let status = Array::small("CSTATUS", [-1, 0, 1, -1, -1, -1, -1, -1].into_iter());
+        let grid = Grid {
+            points: 8,
+            cells: 1,
+            point_data: vec![&status],
+            cell_data: vec![],
+            coordinates: &coordinates,
+            topology: [&connectivity, &offsets, &types],
+        };
+        grid.write(&path).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let marker = b"<AppendedData encoding=\"raw\">\n_";
+        let data = bytes.windows(marker.len()).position(|w| w == marker).unwrap() + marker.len();
+        let head = std::str::from_utf8(&bytes[..data]).unwrap();
+        assert!(head.contains("NumberOfPoints=\"8\" NumberOfCells=\"1\""));
+        let expected = [
+            ("CSTATUS", &status),
+            ("Points", &coordinates),
+            ("connectivity", &connectivity),
+            ("offsets", &offsets),
+            ("types", &types),
+        ];
+        let declared: Vec<&str> = head.lines().filter(|l| l.starts_with("<DataArray")).collect();
+        assert_eq!(declared.len(), expected.len());
+        for (line, (name, array)) in declared.iter().zip(expected) {
+            assert_eq!(attribute(line, "Name"), name);
+            let at = data + attribute(line, "offset").parse::<usize>().unwrap();
+            let length = u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+            assert_eq!(&bytes[at + 8..at + 8 + length], &array.bytes[..], "{name}");
+        }
+        assert_eq!(attribute(declared[1], "NumberOfComponents"), "3");
+        assert!(bytes.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+    }
+}

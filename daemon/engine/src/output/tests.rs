@@ -1,0 +1,154 @@
+//! The writer shall follow the output requests of a deck while the deck is solved, and keep what there is when a run stops.
+
+use std::fs;
+
+use super::*;
+use crate::deck;
+use crate::model::Dialect;
+use crate::simulation::{AdvanceOutcome, PrepareOptions};
+
+/// Two cubes of side 1, the upper pressed down by 0.01 in four increments.
+const DECK: &str = "\
+*HEADING
+two cubes
+*NODE
+1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1
+11,0,0,1\n12,1,0,1\n13,1,1,1\n14,0,1,1\n15,0,0,2\n16,1,0,2\n17,1,1,2\n18,0,1,2
+*ELEMENT, TYPE=C3D8, ELSET=LOWER
+1,1,2,3,4,5,6,7,8
+*ELEMENT, TYPE=C3D8, ELSET=UPPER
+2,11,12,13,14,15,16,17,18
+*NSET, NSET=BOTTOM
+1,2,3,4
+*NSET, NSET=TOP
+15,16,17,18
+*NSET, NSET=ALL
+1,2,3,4,5,6,7,8,11,12,13,14,15,16,17,18
+*MATERIAL, NAME=M
+*ELASTIC
+1000.,0.
+*SOLID SECTION, ELSET=LOWER, MATERIAL=M
+*SOLID SECTION, ELSET=UPPER, MATERIAL=M
+*SURFACE, NAME=SEC
+UPPER,S1
+*SURFACE, NAME=PRI
+LOWER,S2
+*SURFACE INTERACTION, NAME=I
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+1000.
+*CONTACT PAIR, INTERACTION=I, TYPE=NODE TO SURFACE, SMALL SLIDING
+SEC,PRI
+*BOUNDARY
+ALL,1,2
+BOTTOM,3,3
+*STEP
+*STATIC, DIRECT
+0.25,1.
+*BOUNDARY
+TOP,3,3,-0.03
+*NODE PRINT, NSET=TOP, TOTALS=YES, FREQUENCY=2
+U,RF
+*CONTACT PRINT, FREQUENCY=3
+CSTRESS,CDISP
+*NODE FILE, FREQUENCY=3
+U
+*END STEP
+";
+
+/// Passes increments on and asks to stop after some.
+struct StopAfter<'a> {
+    writer: &'a mut ResultWriter,
+    left: u32,
+}
+
+impl Watch for StopAfter<'_> {
+    fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
+        self.writer.increment(simulation, report);
+        self.left -= 1;
+    }
+
+    fn cancelled(&self) -> bool {
+        self.left == 0
+    }
+}
+
+/// Runs some of the four increments; returns the folder.
+fn solved(increments: u32) -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    let reading = deck::read_text(DECK, Dialect::Abaqus);
+    let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| ());
+    let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
+    let mut writer = ResultWriter::create(directory.path(), "job", Arc::clone(&prepared)).unwrap();
+    let mut simulation = Simulation::new(prepared);
+    let mut watch = StopAfter { writer: &mut writer, left: increments };
+    let outcome = simulation.advance(1.0, &mut watch).unwrap();
+    let expected = if increments == 4 { AdvanceOutcome::Reached } else { AdvanceOutcome::Cancelled };
+    assert_eq!(outcome, expected);
+    writer.finish(&simulation).unwrap();
+    directory
+}
+
+/// The lines of a table as columns by name.
+fn column(directory: &tempfile::TempDir, file: &str, name: &str) -> Vec<String> {
+    let text = fs::read_to_string(directory.path().join(file)).unwrap();
+    let mut lines = text.lines();
+    let position = lines.next().unwrap().split(',').position(|c| c == name).unwrap_or_else(|| panic!("no {name}"));
+    lines.map(|line| line.split(',').nth(position).unwrap().to_owned()).collect()
+}
+
+fn numbers(directory: &tempfile::TempDir, file: &str, name: &str) -> Vec<f64> {
+    column(directory, file, name).iter().map(|v| v.parse().unwrap()).collect()
+}
+
+fn frames(directory: &tempfile::TempDir) -> usize {
+    let list = fs::read_to_string(directory.path().join("job.pvd")).unwrap();
+    let names: Vec<&str> = list.split("file=\"").skip(1).map(|s| s.split('"').next().unwrap()).collect();
+    assert!(names.iter().all(|name| directory.path().join(name).is_file()));
+    names.len()
+}
+
+#[test]
+fn requests_decide_what_is_written() {
+    let directory = solved(4);
+    assert_eq!(numbers(&directory, "job_history.csv", "time"), [0.25, 0.5, 0.75, 1.0]);
+    // Three springs of 1000 in a row over area 1.
+    for (rf, share) in numbers(&directory, "job_history.csv", "RF3[TOP]").iter().zip([0.25, 0.5, 0.75, 1.0]) {
+        assert!((rf + 10.0 * share).abs() < 1e-9, "{rf}");
+    }
+    assert_eq!(numbers(&directory, "job_nodes.csv", "increment"), [2.0, 2.0, 2.0, 2.0, 4.0, 4.0, 4.0, 4.0]);
+    assert_eq!(column(&directory, "job_nodes.csv", "node")[..4], ["15", "16", "17", "18"]);
+    assert!(numbers(&directory, "job_nodes.csv", "U3")[4..].iter().all(|u| *u == -0.03));
+    assert_eq!(numbers(&directory, "job_contact.csv", "increment"), [3.0, 3.0, 3.0, 3.0, 4.0, 4.0, 4.0, 4.0]);
+    assert!(column(&directory, "job_contact.csv", "status").iter().all(|s| s == "CL"));
+    assert!(numbers(&directory, "job_contact.csv", "CPRESS")[4..].iter().all(|p| (p - 10.0).abs() < 1e-9));
+    assert_eq!(frames(&directory), 2);
+    let printed = fs::read_to_string(directory.path().join("job.dat")).unwrap();
+    for part in ["two cubes", "NODES OF NODE SET TOP", "CONTACT PAIR (SEC,PRI)", "1.000000E+01", "TOTAL FORCE"] {
+        assert!(printed.contains(part), "{part} is missing in\n{printed}");
+    }
+    assert_eq!(printed.matches("SUMMARY").count(), 3, "increments 2, 3 and 4");
+}
+
+#[test]
+fn a_stopped_run_gets_what_its_last_increment_lacked() {
+    let directory = solved(2);
+    assert_eq!(numbers(&directory, "job_history.csv", "time"), [0.25, 0.5]);
+    assert_eq!(numbers(&directory, "job_nodes.csv", "increment"), [2.0; 4], "written once, by its request");
+    assert_eq!(numbers(&directory, "job_contact.csv", "increment"), [2.0; 4], "written because the run ends");
+    assert_eq!(frames(&directory), 1);
+    let printed = fs::read_to_string(directory.path().join("job.dat")).unwrap();
+    assert_eq!(printed.matches("SUMMARY").count(), 1, "{printed}");
+    assert!(printed.contains("CONTACT PAIR (SEC,PRI)"));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_ends_the_writing_and_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::create_dir(directory.path().join("job_contact.csv")).unwrap();
+    let model = deck::read_text(DECK, Dialect::Abaqus).model.unwrap();
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| ());
+    let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
+    let error = ResultWriter::create(directory.path(), "job", prepared).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("job_contact.csv"), "{error}");
+}
