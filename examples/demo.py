@@ -28,6 +28,7 @@ import generate_deck
 ROOT = Path(__file__).resolve().parent.parent
 INCREMENTS = 20
 DECKS = {"punch": 16, "hertz": 54}
+OUTPUT = ["--small-sliding", "--field-frequency", 5]
 WAYS = ("overclosure run", "daemon session", "FMU in FMPy")
 PAIR = "SSL_SMA"
 
@@ -258,7 +259,7 @@ def draw(job, out):
     curves = {}
     for way, answer in job.answers.items():
         moved = [-problem.displacement * t for t in answer.times]
-        curves[way] = ([0.0, *moved], [0.0, *(-f for f in answer.outputs[output])])
+        curves[way] = (moved, [-f for f in answer.outputs[output]])
     demo_plots.force_displacement(curves, curve, f"{job.kind} {job.size}: force over displacement, solved three ways")
     return [pressure, curve]
 
@@ -282,7 +283,7 @@ def main():
     jobs = []
     for kind, size in DECKS.items():
         deck = out / f"{kind}{size}.inp"
-        mesh = generate_deck.generate([kind, size, deck, "--increments", INCREMENTS])
+        mesh = generate_deck.generate([kind, size, deck, "--increments", INCREMENTS, *OUTPUT])
         jobs.append(Job(kind, size, deck, mesh))
     with running_daemon(out) as endpoint:
         solve(out, jobs, endpoint)

@@ -22,7 +22,6 @@ class Surface:
     coordinates: np.ndarray
     quads: np.ndarray
     pressure: np.ndarray
-    status: list[str]
 
 
 def style(axes, title, x, y):
@@ -67,11 +66,14 @@ def punch_pressure(surface, path, force, area):
     scaled = x[diagonal][order]
     cut.plot(scaled, surface.pressure[diagonal][order], "^", ms=4, ls="-", lw=1.2, color="#3b8f5a", label="diagonal")
     cut.axhline(force / area, color=MUTED, lw=1, ls="--")
-    cut.annotate("mean", (x.min(), force / area), xytext=(2, 4), textcoords="offset points", color=MUTED, fontsize=9)
-    cut.set_ylim(bottom=0.0)
+    middle_x = 0.5 * (x.min() + x.max())
+    cut.annotate(
+        "mean pressure", (middle_x, force / area), (0, 4), textcoords="offset points", ha="center", color=MUTED
+    )
+    cut.set_ylim(0.0, 1.15 * surface.pressure.max())
     cut.grid(color=GRID, lw=0.6)
     cut.legend(frameon=False, loc="upper center", ncols=3)
-    style(cut, "CPRESS along lines of nodes", "x", "CPRESS")
+    style(cut, "CPRESS along lines of nodes", "x", "")
     figure.savefig(path, dpi=150)
     plt.close(figure)
 
@@ -103,6 +105,7 @@ def hertz_pressure(surface, path, theory):
         lw=1.2,
         color="#1f5fa8",
         label="CPRESS, secondary nodes",
+        clip_on=False,
     )
     curve.set_ylim(bottom=0.0)
     curve.grid(color=GRID, lw=0.6)
@@ -129,6 +132,8 @@ def force_displacement(curves, path, title):
         "FMU in FMPy": {"ls": "", "marker": "x", "ms": 6, "mew": 1.6},
     }
     for name, (displacement, force) in curves.items():
+        if name == "overclosure run":
+            displacement, force = [0.0, *displacement], [0.0, *force]
         axes.plot(displacement, force, label=name, color=COLORS[name], **looks[name])
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)

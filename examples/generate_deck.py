@@ -167,7 +167,8 @@ def write(path, kind, size, options):
     stiffness = problem.stiffness if options.stiffness is None else options.stiffness
     displacement = problem.displacement if options.displacement is None else options.displacement
     lines = ["*HEADING", f"{kind} {size}, {options.law}", "*NODE, NSET=NALL"]
-    lines += [f"{label}, {x!r}, {y!r}, {z!r}" for label, (x, y, z) in enumerate(deck.nodes, 1)]
+    # 14 digits: CalculiX reads 20 characters of a number.
+    lines += [f"{label}, {x:.14g}, {y:.14g}, {z:.14g}" for label, (x, y, z) in enumerate(deck.nodes, 1)]
     for part, bricks in deck.elements.items():
         lines.append(f"*ELEMENT, TYPE=C3D8, ELSET={part}")
         lines += [f"{label}, " + ", ".join(map(str, corners)) for label, corners in bricks]
@@ -180,7 +181,9 @@ def write(path, kind, size, options):
         lines += [f"*SOLID SECTION, ELSET={part}, MATERIAL=M{part}"]
     lines += ["*SURFACE INTERACTION, NAME=CONTACT"]
     lines += law_lines(options.law, stiffness, options.table, options.c0, options.p0)
-    lines += ["*CONTACT PAIR, INTERACTION=CONTACT, TYPE=NODE TO SURFACE", "SSL, SMA", "*BOUNDARY", *problem.supports]
+    sliding = ", SMALL SLIDING" if options.small_sliding else ""
+    lines += [f"*CONTACT PAIR, INTERACTION=CONTACT, TYPE=NODE TO SURFACE{sliding}", "SSL, SMA"]
+    lines += ["*BOUNDARY", *problem.supports]
     if options.increments:
         lines += [f"*STEP, INC={max(100, options.increments)}", "*STATIC, DIRECT", f"{1.0 / options.increments!r}, 1."]
     else:
@@ -188,7 +191,8 @@ def write(path, kind, size, options):
     lines += ["*BOUNDARY", f"NTOP, {problem.direction}, {problem.direction}, {displacement!r}"]
     lines += ["*NODE PRINT, NSET=NTOP, TOTALS=ONLY", "RF"]
     if options.fields:
-        lines += ["*CONTACT FILE", "CDIS, CSTR", "*NODE FILE", "U"]
+        every = f", FREQUENCY={options.field_frequency}" if options.field_frequency > 1 else ""
+        lines += [f"*CONTACT FILE{every}", "CDIS, CSTR", f"*NODE FILE{every}", "U"]
     lines += ["*END STEP"]
     Path(path).write_text("\n".join(lines) + "\n", encoding="ascii")
     return deck
@@ -221,6 +225,8 @@ def parser():
     result.add_argument("--poisson", type=float, default=0.3)
     result.add_argument("--displacement", type=float, help="of NTOP, negative is down")
     result.add_argument("--increments", type=int, default=0, help="fixed increments; 0: automatic, starting with one")
+    result.add_argument("--small-sliding", action="store_true", help="say so in the deck")
+    result.add_argument("--field-frequency", type=int, default=1, help="fields every so many increments")
     result.add_argument("--no-fields", dest="fields", action="store_false", help="ask for the reaction total only")
     shape = result.add_argument_group("dimensions of the punch deck [length]")
     for name in ("width", "height", "foundation-width", "foundation-height"):
