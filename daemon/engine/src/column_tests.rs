@@ -196,6 +196,42 @@ fn a_driven_input_with_the_values_of_the_deck_gives_the_bits_of_the_deck() {
     assert_eq!(by_deck.history(), driven.history());
 }
 
+/// Times are asked for as sums, as FMI masters do, or all at once; the increments must not notice.
+#[test]
+fn increments_have_the_same_bits_whoever_asks_for_them() {
+    for direct in [true, false] {
+        let build = || {
+            let mut model = column(exponential(), 0.08);
+            let Procedure::Static(control) = &mut model.steps[0].procedure;
+            *control = StaticControl { increment_max: 0.05, direct, ..*control };
+            let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
+            Simulation::new(Arc::new(prepared))
+        };
+        let (mut at_once, mut by_sums) = (build(), build());
+        let mut time = 0.0;
+        for k in 1..=20 {
+            time += 0.05;
+            assert_eq!(by_sums.advance(time, &mut ()), Ok(AdvanceOutcome::Reached));
+            assert_eq!(by_sums.step_reports()[0].counts.increments, k, "direct {direct}");
+        }
+        assert_eq!(at_once.advance(1.0, &mut ()), Ok(AdvanceOutcome::Reached));
+        assert_eq!(at_once.checkpoint(), by_sums.checkpoint(), "direct {direct}");
+    }
+}
+
+#[test]
+fn automatic_increments_grow_up_to_the_largest() {
+    let mut model = column(exponential(), 0.08);
+    let Procedure::Static(control) = &mut model.steps[0].procedure;
+    *control = StaticControl { increment_initial: 0.01, increment_max: 0.2, direct: false, ..*control };
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
+    let mut s = Simulation::new(Arc::new(prepared));
+    assert_eq!(s.advance(1.0, &mut ()), Ok(AdvanceOutcome::Reached));
+    let increments = s.step_reports()[0].counts.increments;
+    assert!((8..=30).contains(&increments), "{increments}");
+    assert_eq!(s.time(), 1.0);
+}
+
 #[test]
 fn a_replaced_magnitude_keeps_the_ramp() {
     let mut s = simulation(NormalBehavior::Hard, 0.08);
@@ -219,7 +255,9 @@ fn nonsense_from_outside_is_refused() {
 fn a_body_that_only_contact_holds_is_refused_by_name() {
     let mut model = column(NormalBehavior::Hard, 0.08);
     model.steps[0].boundaries.clear();
-    let Err(errors) = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}) else { panic!("accepted") };
+    let Err(errors) = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}) else {
+        panic!("accepted")
+    };
     let text = errors[0].to_string();
     assert!(text.contains("COLUMN") && text.contains("translation along 3"), "{text}");
 }

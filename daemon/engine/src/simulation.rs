@@ -83,7 +83,9 @@ impl Simulation {
         let state = State {
             step: 0,
             step_time: 0.0,
-            increment_next: control.increment_initial,
+            increment_next: control.increment_initial.min(control.increment_max),
+            increment_anchor: 0.0,
+            increment_index: 0,
             easy_increments: 0,
             counts,
             coefficients: vec![0.0; prepared.real_columns],
@@ -249,7 +251,9 @@ impl Simulation {
         self.state.step_time = 0.0;
         self.state.step_start.clone_from(&self.state.coefficients);
         let Procedure::Static(control) = self.prepared.model.steps[self.state.step as usize].procedure;
-        self.state.increment_next = control.increment_initial;
+        self.state.increment_next = control.increment_initial.min(control.increment_max);
+        self.state.increment_anchor = 0.0;
+        self.state.increment_index = 0;
         self.state.easy_increments = 0;
         self.state.counts.push(WorkCounts::default());
     }

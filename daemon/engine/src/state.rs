@@ -26,6 +26,11 @@ pub struct State {
     pub step_time: f64,
     /// Next automatic increment.
     pub increment_next: f64,
+    /// Step time from which increments of the present size are counted, and how many of them are done: their ends are
+    /// `anchor + k · size`, so that they have the same bits whoever asks for them.
+    pub increment_anchor: f64,
+    /// See `increment_anchor`.
+    pub increment_index: u32,
     /// Easy increments in a row.
     pub easy_increments: u32,
     /// Work per step begun so far.
@@ -122,6 +127,8 @@ mod tests {
             step: 0,
             step_time: 0.25,
             increment_next: 0.05,
+            increment_anchor: 0.0,
+            increment_index: 5,
             easy_increments: 1,
             counts: vec![WorkCounts::default()],
             coefficients: vec![1.5, -0.0],

@@ -1,8 +1,8 @@
 //! Pressure-overclosure relationships: what pressure a given overclosure transmits. Imports nothing of the engine.
 //!
-//! Every law takes the overclosure `h` [length], positive when the bodies overlap, and returns a pressure
-//! [pressure], positive in compression. For a node-based secondary surface without an area the same curves are
-//! read as force [force] over overclosure.
+//! Every law takes the overclosure `h` \[length\], positive when the bodies overlap, and returns a pressure
+//! \[pressure\], positive in compression. For a node-based secondary surface without an area the same curves are
+//! read as force \[force\] over overclosure.
 //!
 //! A law is finite for every finite overclosure: where a value would exceed the largest `f64` it saturates there
 //! ([`LawPoint::pressure`], `stiffness` and `energy` each on its own).
@@ -35,7 +35,7 @@ use serde::{Deserialize, Serialize};
 /// Pressure, its slope and its integral at one overclosure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LawPoint {
-    /// Contact pressure [pressure]; positive pushes the bodies apart.
+    /// Contact pressure \[pressure\]; positive pushes the bodies apart.
     pub pressure: f64,
     /// dp/dh [pressure/length].
     pub stiffness: f64,
@@ -45,13 +45,13 @@ pub struct LawPoint {
 
 /// A softened normal law. Pure: no state, no allocation in `evaluate`, defined for every finite `h`.
 pub trait PressureLaw {
-    /// Pressure, slope and energy at an overclosure [length]. Finite for every finite argument, NaN for NaN.
+    /// Pressure, slope and energy at an overclosure \[length\]. Finite for every finite argument, NaN for NaN.
     fn evaluate(&self, overclosure: f64) -> LawPoint;
 
-    /// Overclosures at which the slope (for [`CalculixExponential`] the pressure itself) is discontinuous, ascending.
+    /// Overclosures at which the slope is discontinuous, ascending.
     fn kinks(&self) -> Vec<f64>;
 
-    /// Largest overclosure [length] at which the law transmits no more than `pressure`: the inverse of the curve
+    /// Largest overclosure \[length\] at which the law transmits no more than `pressure`: the inverse of the curve
     /// where it rises, and its onset for every pressure that is not positive.
     fn overclosure_at(&self, pressure: f64) -> f64;
 }

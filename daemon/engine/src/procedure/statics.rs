@@ -56,13 +56,13 @@ impl Simulation {
             }
             let mut attempt = 1;
             loop {
-                let (end, clipped) =
-                    next_time(&control, self.state.step_time, self.state.increment_next, target, tolerance);
+                let proposed = self.proposed_time(&control);
+                let (end, clipped) = next_time(&control, self.state.step_time, proposed, target, tolerance);
                 let size = end - self.state.step_time;
                 match self.attempt(end, &interval) {
                     Ok((counts, changes)) => {
                         done += 1;
-                        self.complete(&control, size, clipped, attempt, counts);
+                        self.complete(&control, clipped, attempt, counts);
                         let report = self.report(size, attempt, counts, changes);
                         watch.increment(self, &report);
                         break;
@@ -74,7 +74,7 @@ impl Simulation {
                         }
                         attempt += 1;
                         self.state.counts[step].cutbacks += 1;
-                        self.state.increment_next = smaller;
+                        self.set_increment(smaller);
                         self.state.easy_increments = 0;
                     }
                 }
@@ -207,7 +207,7 @@ impl Simulation {
         changes
     }
 
-    fn complete(&mut self, control: &StaticControl, size: f64, clipped: bool, attempt: u32, counts: SolveCounts) {
+    fn complete(&mut self, control: &StaticControl, clipped: bool, attempt: u32, counts: SolveCounts) {
         let step = self.state.step as usize;
         let total = &mut self.state.counts[step];
         total.increments += 1;
@@ -215,10 +215,38 @@ impl Simulation {
         total.severe_discontinuity_iterations += counts.severe_discontinuity_iterations;
         let easy = attempt == 1 && counts.equilibrium_iterations <= EASY_ITERATIONS;
         self.state.easy_increments = if easy { self.state.easy_increments + 1 } else { 0 };
-        if !control.direct && !clipped && self.state.easy_increments >= 2 {
-            self.state.increment_next = (GROWTH * size).min(control.increment_max);
-            self.state.easy_increments = 0;
+        if clipped {
+            // Off the grid: the next increments are counted from here.
+            self.set_increment(self.state.increment_next);
+            return;
         }
+        self.state.increment_index += 1;
+        if self.state.easy_increments >= 2 {
+            self.state.easy_increments = 0;
+            let grown = (GROWTH * self.state.increment_next).min(control.increment_max);
+            if grown > self.state.increment_next {
+                self.set_increment(grown);
+            }
+        }
+    }
+
+    /// Starts to count increments of a size from the present time.
+    fn set_increment(&mut self, size: f64) {
+        self.state.increment_next = size;
+        self.state.increment_anchor = self.state.step_time;
+        self.state.increment_index = 0;
+    }
+
+    /// End of the next increment if nothing cuts it short, on the grid of the present size.
+    ///
+    /// Fixed increments stand on the grid `k · size` of the whole step.
+    fn proposed_time(&self, control: &StaticControl) -> f64 {
+        let now = self.state.step_time;
+        if control.direct {
+            let size = control.increment_initial;
+            return ((now / size + 1e-9).floor() + 1.0) * size;
+        }
+        self.state.increment_anchor + f64::from(self.state.increment_index + 1) * self.state.increment_next
     }
 
     fn report(
@@ -246,23 +274,16 @@ impl Simulation {
     }
 }
 
-/// End of the next increment, and whether the end of the step or of the request cut it short.
+/// End of the next increment, and whether the end of the step or of the request cut it short of the proposed one.
 ///
-/// Fixed increments stand on the grid `k · size` of the step, so that their times have the same bits whoever asks.
-fn next_time(control: &StaticControl, now: f64, increment_next: f64, target: f64, tolerance: f64) -> (f64, bool) {
-    let proposed = if control.direct {
-        let size = control.increment_initial;
-        ((now / size + 1e-9).floor() + 1.0) * size
-    } else {
-        now + increment_next.min(control.increment_max)
-    };
+/// A request that ends on a proposed time to rounding gets the proposed time, so that increments have the same bits
+/// whether they are asked for one by one or all at once.
+fn next_time(control: &StaticControl, now: f64, proposed: f64, target: f64, tolerance: f64) -> (f64, bool) {
     let mut end = proposed;
     if now < control.period - tolerance && end > control.period - tolerance {
         end = control.period;
     }
     if end > target + tolerance {
-        end = target;
-    } else if !control.direct && end > target - tolerance {
         end = target;
     }
     (end, end < proposed - tolerance)
@@ -324,32 +345,25 @@ impl Failure {
 mod tests {
     use super::*;
 
-    fn control(direct: bool) -> StaticControl {
-        StaticControl { increment_initial: 0.05, period: 1.0, increment_min: 1e-5, increment_max: 1.0, direct }
+    fn control() -> StaticControl {
+        StaticControl { increment_initial: 0.05, period: 1.0, increment_min: 1e-5, increment_max: 1.0, direct: true }
     }
 
     #[test]
-    fn fixed_increments_have_the_same_times_whether_asked_one_by_one_or_at_once() {
-        let (mut at_once, mut one_by_one, mut sum) = (0.0, 0.0, 0.0);
-        for k in 1..=20 {
-            at_once = next_time(&control(true), at_once, 0.05, 1.0, 1e-12).0;
-            sum += 0.05;
-            let target: f64 = sum;
-            one_by_one = next_time(&control(true), one_by_one, 0.05, target, 1e-12).0;
-            assert_eq!(at_once.to_bits(), one_by_one.to_bits(), "increment {k}");
-        }
-        assert_eq!(at_once, 1.0);
+    fn a_request_on_the_grid_to_rounding_ends_on_the_grid() {
+        let (grid, sum) = (6.0 * 0.05, 0.05 + 0.05 + 0.05 + 0.05 + 0.05 + 0.05);
+        assert_ne!(grid, sum);
+        assert_eq!(next_time(&control(), 0.25, grid, sum, 1e-12), (grid, false));
     }
 
     #[test]
     fn a_request_between_two_grid_times_ends_where_it_asks() {
-        assert_eq!(next_time(&control(true), 0.05, 0.05, 0.07, 1e-12), (0.07, true));
-        assert_eq!(next_time(&control(true), 0.07, 0.05, 1.0, 1e-12), (0.1, false));
+        assert_eq!(next_time(&control(), 0.05, 0.1, 0.07, 1e-12), (0.07, true));
     }
 
     #[test]
     fn the_end_of_the_step_is_the_end_of_an_increment() {
-        assert_eq!(next_time(&control(false), 0.9, 0.3, 2.0, 1e-12), (1.0, true));
-        assert_eq!(next_time(&control(false), 1.0, 0.3, 2.0, 1e-12), (1.3, false));
+        assert_eq!(next_time(&control(), 0.9, 1.2, 2.0, 1e-12), (1.0, true));
+        assert_eq!(next_time(&control(), 1.0, 1.3, 2.0, 1e-12), (1.3, false));
     }
 }
