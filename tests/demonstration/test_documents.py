@@ -68,10 +68,22 @@ def test_the_deck_commands_of_the_readme_run(tmp_path):
 
 
 def test_every_verb_of_the_readme_exists():
-    verbs = set(re.findall(r"^overclosure (\w+)", README, re.MULTILINE))
-    assert {"run", "check", "law", "pack", "serve"} <= verbs
+    verbs = set(re.findall(r"^overclosure (\w+)", "\n".join(blocks("text") + blocks("sh")), re.MULTILINE))
+    assert {"run", "check", "law", "pack", "serve", "sessions"} <= verbs
     for verb in verbs:
         assert support.call("help", verb).returncode == 0, verb
+
+
+def test_the_fmu_commands_of_the_readme_run(tmp_path):
+    (command,) = re.findall(r"^overclosure pack (examples/\S+) -o (\S+)$", README, re.MULTILINE)
+    fmu = tmp_path / command[1]
+    done = support.call("pack", support.ROOT / command[0], "-o", fmu)
+    assert done.returncode == 0, done.stderr
+    assert f"-m fmpy simulate {command[1]} --show-plot" in README
+    done = python("-m", "fmpy", "simulate", fmu, "--output-file", tmp_path / "result.csv")
+    assert done.returncode == 0, done.stderr
+    header = (tmp_path / "result.csv").read_text(encoding="utf-8").splitlines()[0]
+    assert "contact.SSL_SMA.CFN3" in header
 
 
 def test_the_law_command_of_the_readme_runs():
