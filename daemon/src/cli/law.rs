@@ -98,7 +98,7 @@ impl Overclosures {
         }
         // TO counts as reached when it is missed by rounding alone.
         let rows = (steps * (1.0 + 1e-12) + 1e-9).floor() + 1.0;
-        if !(rows <= ROWS_MAX) {
+        if rows.is_nan() || rows > ROWS_MAX {
             return Err(format!("that is {rows:e} rows; at most {ROWS_MAX:e} are written"));
         }
         Ok(Self::Range { from, step, count: rows as usize })

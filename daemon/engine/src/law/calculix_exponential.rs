@@ -12,7 +12,7 @@
 //!
 //! * `h` overclosure \[length\], positive when the bodies overlap; `p` pressure \[pressure\], positive in compression;
 //!   `c0` clearance at which the pressure has fallen to a hundredth of `p0` \[length\]; `p0` pressure at zero clearance
-//!   \[pressure\]; `U` energy [pressure*length].
+//!   \[pressure\]; `U` energy \[pressure*length\].
 //! * Domain: every finite `h`; `c0` and `p0` positive and finite. The meaning is that of CalculiX's node-to-surface contact
 //!   (its surface-to-surface contact uses the same curve for `h >= 0` only).
 //! * Where CalculiX caps the force of a point at exp(23) in whatever units the deck has, this curve goes on straight, with
@@ -91,7 +91,7 @@ impl CalculixExponential {
     }
 }
 
-/// Energy of the line that stands for the jump [pressure*length].
+/// Energy of the line that stands for the jump \[pressure*length\].
 fn jump_energy(clearance: f64, pressure: f64) -> f64 {
     0.5 * (0.01 * pressure) * (JUMP_WIDTH * clearance)
 }

@@ -9,9 +9,9 @@
 //! p(h)  = p(h_s) + p'(h_s) (h - h_s)     h > h_s
 //! ```
 //!
-//! * `h` overclosure [length], positive when the bodies overlap; `p` pressure [pressure], positive in compression;
-//!   `c0` clearance at which the pressure begins [length]; `p0` pressure at zero clearance [pressure]; `U` energy
-//!   [pressure*length]; `h_s` the overclosure where the straight continuation begins [length].
+//! * `h` overclosure \[length\], positive when the bodies overlap; `p` pressure \[pressure\], positive in compression;
+//!   `c0` clearance at which the pressure begins \[length\]; `p0` pressure at zero clearance \[pressure\]; `U` energy
+//!   \[pressure*length\]; `h_s` the overclosure where the straight continuation begins \[length\].
 //! * Without a stiffness limit `h_s = 6 c0` (the straight continuation of Abaqus/Standard, kept in Abaqus/Explicit as
 //!   a guard against overflow). With a limit `k_max` [pressure/length] (Abaqus/Explicit) `h_s` is where the slope
 //!   reaches it: `(u + 1) exp(u) = 1 + k_max c0 / a`, so `u = W0(e (1 + k_max c0 / a)) - 1` with Lambert's W. That may
@@ -37,9 +37,9 @@ pub struct Exponential {
     clearance_at_zero_pressure: f64,
     pressure_at_zero_clearance: f64,
     stiffness_max: Option<f64>,
-    /// `p0 / (e - 1)` [pressure].
+    /// `p0 / (e - 1)` \[pressure\].
     scale: f64,
-    /// Overclosure where the straight continuation begins [length].
+    /// Overclosure where the straight continuation begins \[length\].
     switch: f64,
     /// Values there.
     at_switch: LawPoint,
@@ -47,7 +47,7 @@ pub struct Exponential {
 
 impl Exponential {
     /// With the straight continuation beyond an overclosure of six times the clearance. Refuses parameters
-    /// (clearance [length], pressure [pressure]) that are not positive and finite.
+    /// (clearance \[length\], pressure \[pressure\]) that are not positive and finite.
     pub fn new(clearance_at_zero_pressure: f64, pressure_at_zero_clearance: f64) -> Result<Self, LawError> {
         Self::build(clearance_at_zero_pressure, pressure_at_zero_clearance, None)
     }
@@ -84,12 +84,12 @@ impl Exponential {
         })
     }
 
-    /// Clearance at which the pressure begins, c0 [length].
+    /// Clearance at which the pressure begins, c0 \[length\].
     pub fn clearance_at_zero_pressure(&self) -> f64 {
         self.clearance_at_zero_pressure
     }
 
-    /// Pressure at zero clearance, p0 [pressure].
+    /// Pressure at zero clearance, p0 \[pressure\].
     pub fn pressure_at_zero_clearance(&self) -> f64 {
         self.pressure_at_zero_clearance
     }
@@ -99,7 +99,7 @@ impl Exponential {
         self.stiffness_max
     }
 
-    /// Overclosure at which the straight continuation begins [length]; negative when that is a clearance.
+    /// Overclosure at which the straight continuation begins \[length\]; negative when that is a clearance.
     pub fn continuation_start(&self) -> f64 {
         self.switch
     }

@@ -5,8 +5,8 @@
 //! p(h) = 0          h <= 0        U(h) = 0
 //! ```
 //!
-//! * `h` overclosure [length], positive when the bodies overlap; `p` pressure [pressure], positive in compression;
-//!   `k` contact stiffness [pressure/length]; `U` energy [pressure*length].
+//! * `h` overclosure \[length\], positive when the bodies overlap; `p` pressure \[pressure\], positive in compression;
+//!   `k` contact stiffness [pressure/length]; `U` energy \[pressure*length\].
 //! * Domain: every finite `h`; `k` positive and finite.
 //! * Kinks: the slope jumps from 0 to `k` at `h = 0`; at that point it is 0.
 //! * Source: Abaqus Analysis User's Manual v6.5, 22.1.2, "Softened contact defined as a linear function".

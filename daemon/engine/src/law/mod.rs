@@ -39,7 +39,7 @@ pub struct LawPoint {
     pub pressure: f64,
     /// dp/dh [pressure/length].
     pub stiffness: f64,
-    /// Integral of the pressure from separation up to `h` [pressure*length].
+    /// Integral of the pressure from separation up to `h` \[pressure*length\].
     pub energy: f64,
 }
 

@@ -23,18 +23,18 @@ pub enum LawParameters {
     },
     /// [`Exponential`].
     Exponential {
-        /// c0 [length], positive.
+        /// c0 \[length\], positive.
         clearance_at_zero_pressure: f64,
-        /// p0 [pressure], positive.
+        /// p0 \[pressure\], positive.
         pressure_at_zero_clearance: f64,
         /// Limit of the slope [pressure/length], positive; Abaqus/Explicit only.
         stiffness_max: Option<f64>,
     },
     /// [`CalculixExponential`].
     CalculixExponential {
-        /// c0 [length], positive.
+        /// c0 \[length\], positive.
         clearance: f64,
-        /// p0 [pressure], positive.
+        /// p0 \[pressure\], positive.
         pressure: f64,
     },
 }

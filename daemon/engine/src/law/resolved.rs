@@ -5,7 +5,7 @@
 //! separation prevented:  p(h) of the law for h >= h_1,  s_1 (h - h_1) below
 //! ```
 //!
-//! * `h_1` [length] is the overclosure of zero pressure, `s_1` [pressure/length] the slope that begins there. The pressure
+//! * `h_1` \[length\] is the overclosure of zero pressure, `s_1` [pressure/length] the slope that begins there. The pressure
 //!   below `h_1` is negative: tension. This is the law of a point that has closed before; until then an open point
 //!   transmits nothing.
 //! * Kinks: those of the law, less `h_1` when separation is prevented.

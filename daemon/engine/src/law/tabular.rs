@@ -7,8 +7,8 @@
 //! U(h) = integral of p from h_1 to h
 //! ```
 //!
-//! * `h` overclosure [length], positive when the bodies overlap; `p` pressure [pressure], positive in compression;
-//!   `(p_i, h_i)` the points of the table in the manual's order; `U` energy [pressure*length].
+//! * `h` overclosure \[length\], positive when the bodies overlap; `p` pressure \[pressure\], positive in compression;
+//!   `(p_i, h_i)` the points of the table in the manual's order; `U` energy \[pressure*length\].
 //! * Domain: every finite `h`. At least two points, pressure and overclosure strictly increasing, `p_1 = 0`.
 //!   `h_1` may be negative: pressure then begins at a clearance.
 //! * Kinks: every point of the table. At `h_1` the slope is 0, at the others it is that of the segment to the right.
@@ -34,7 +34,7 @@ pub struct Tabular {
 }
 
 impl Tabular {
-    /// From points (pressure [pressure], overclosure [length]), the manual's order. Refuses fewer than two points,
+    /// From points (pressure \[pressure\], overclosure \[length\]), the manual's order. Refuses fewer than two points,
     /// numbers that are not finite, values that do not increase, and a first pressure other than 0.
     pub fn new(points: &[(f64, f64)]) -> Result<Self, LawError> {
         match violations(points).into_iter().next() {
@@ -48,7 +48,7 @@ impl Tabular {
         self.segments.iter().map(|s| (s.pressure, s.overclosure)).collect()
     }
 
-    /// Overclosure at which pressure begins [length].
+    /// Overclosure at which pressure begins \[length\].
     pub fn onset(&self) -> f64 {
         self.segments[0].overclosure
     }

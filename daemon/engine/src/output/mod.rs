@@ -149,7 +149,7 @@ fn step_of<'a>(model: &'a Model, increment: &IncrementReport) -> Option<&'a Step
     model.steps.get((increment.step as usize).checked_sub(1)?)
 }
 
-/// Length of a step [time].
+/// Length of a step \[time\].
 fn period(procedure: &Procedure) -> f64 {
     match procedure {
         Procedure::Static(control) => control.period,
