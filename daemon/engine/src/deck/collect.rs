@@ -5,12 +5,16 @@ use std::io;
 use super::card::{Body, Card, DataLine, Deck, Faces, Header, Members, parse_header};
 use super::keywords::DataLines;
 use super::lex::{self, ends_with_comma, fields, key, looks_numeric};
+use super::members::FACE_REMEDY;
 use super::other_table::defines_names_unseen;
 use super::report::{At, Report, excerpt};
 use super::source::{INCLUDE_DEPTH_MAX, INCLUDES_MAX, IncludeFault, LINE_BYTES_MAX, Line, Source};
 
 /// Bytes of `*HEADING` that are kept.
 const HEADING_BYTES_MAX: usize = 64 * 1024;
+
+/// Largest coordinate: products of several must stay finite.
+const COORDINATE_MAX: f64 = 1e60;
 
 const NODES_PER_ELEMENT: usize = 8;
 
@@ -46,10 +50,10 @@ pub fn collect(source: &mut Source<'_>, report: &mut Report) -> io::Result<Deck>
             continue;
         }
         let header = join_continuations(source, line.to_vec())?;
-        if let Some(input) = collector.keyword_line(&header, at) {
-            if let Err(fault) = source.include(&input) {
-                collector.include_fault(&input, at, fault);
-            }
+        if let Some(input) = collector.keyword_line(&header, at)
+            && let Err(fault) = source.include(&input)
+        {
+            collector.include_fault(&input, at, fault);
         }
     }
     collector.close_card();
@@ -275,7 +279,10 @@ impl Collector<'_> {
         for (coordinate, field) in coordinates.iter_mut().zip(&mut row) {
             given += 1;
             match lex::real(field) {
-                Ok(value) => *coordinate = value,
+                Ok(value) if value.abs() <= COORDINATE_MAX => *coordinate = value,
+                Ok(value) => {
+                    fault = fault.or(Some(format!("coordinate {given}: {value} is out of any sensible range")))
+                }
                 Err(_) if field.is_empty() => {}
                 Err(problem) => {
                     fault = fault.or(Some(format!("coordinate {given}: {} {}", excerpt(field), problem.text())))
@@ -360,45 +367,49 @@ impl Collector<'_> {
     }
 
     fn member_line(&mut self, line: &[u8], at: At) {
-        let keyword = self.keyword();
+        let mut faults: Vec<(String, &str)> = Vec::new();
         match &mut self.sink {
             Sink::Members(members, Generate::Yes) => {
-                if let Err(message) = members.add_range(line, at) {
-                    self.report.error(at, keyword, message, "write: first, last, increment");
-                }
+                faults.extend(
+                    members.add_range(line, at).err().map(|message| (message, "write: first, last, increment")),
+                );
             }
             Sink::Members(members, Generate::No) => {
                 for field in fields(line).filter(|field| !field.is_empty()) {
-                    if let Err(message) = members.add(field, at) {
-                        self.report.error(at, keyword, message, "write numbers and names of sets, separated by commas");
-                    }
+                    let remedy = "write numbers and names of sets, separated by commas";
+                    faults.extend(members.add(field, at).err().map(|message| (message, remedy)));
                 }
             }
             Sink::NodeFaces(members) => {
                 let mut row = fields(line);
-                if let Err(message) = members.add(row.next().unwrap_or(b""), at) {
-                    self.report.error(at, keyword, message, "write the number of a node or the name of a node set");
-                }
+                let remedy = "write the number of a node or the name of a node set";
+                faults.extend(members.add(row.next().unwrap_or(b""), at).err().map(|message| (message, remedy)));
                 if let Some(area) = row.find(|field| !field.is_empty()) {
                     let message = format!("an area per node is not read here: {}", excerpt(area));
-                    self.report.error(at, keyword, message, "give the area on the data line of *SURFACE INTERACTION");
+                    faults.push((message, "give the area on the data line of *SURFACE INTERACTION"));
                 }
             }
             _ => {}
         }
+        self.member_faults(at, faults);
     }
 
     fn face_line(&mut self, line: &[u8], at: At) {
         let Sink::Faces(faces) = &mut self.sink else { return };
         let mut row = fields(line);
         let (region, face) = (row.next().unwrap_or(b""), row.next().unwrap_or(b""));
-        if let Err((message, remedy)) =
-            faces.add(region, face, at).and_then(|()| match row.find(|field| !field.is_empty()) {
-                Some(extra) => Err((format!("item behind the face is not read: {}", excerpt(extra)), FACE_REMEDY)),
-                None => Ok(()),
-            })
-        {
-            self.report.error(at, "*SURFACE", message, remedy);
+        let mut faults: Vec<(String, &str)> = faces.add(region, face, at).err().into_iter().collect();
+        if let Some(extra) = row.find(|field| !field.is_empty()) {
+            faults.push((format!("the item behind the face is not read: {}", excerpt(extra)), FACE_REMEDY));
+        }
+        self.member_faults(at, faults);
+    }
+
+    fn member_faults(&mut self, at: At, faults: Vec<(String, &str)>) {
+        let Some(card) = self.deck.cards.last_mut() else { return };
+        for (message, remedy) in faults {
+            self.report.error(at, card.keyword.name, message, remedy);
+            card.faulty = true;
         }
     }
 
@@ -426,68 +437,5 @@ impl Collector<'_> {
             ),
         };
         self.report.error(at, "*INCLUDE", message, remedy);
-    }
-}
-
-const FACE_REMEDY: &str = "write: element or element set, S1 to S6";
-
-impl Members {
-    fn add(&mut self, field: &[u8], at: At) -> Result<(), String> {
-        if looks_numeric(field) {
-            let label = lex::label(field).map_err(|fault| format!("{} {}", excerpt(field), fault.text()))?;
-            self.labels.push((label, at));
-        } else {
-            self.names.push((name(field)?.into(), at));
-        }
-        Ok(())
-    }
-
-    fn add_range(&mut self, line: &[u8], at: At) -> Result<(), String> {
-        let mut numbers = [0, 0, 1];
-        let mut row = fields(line);
-        for (i, number) in numbers.iter_mut().enumerate() {
-            match row.next() {
-                Some(field) if i < 2 || !field.is_empty() => {
-                    *number = lex::label(field).map_err(|fault| format!("{} {}", excerpt(field), fault.text()))?;
-                }
-                None if i < 2 => return Err("the range has no end".into()),
-                _ => {}
-            }
-        }
-        if let Some(extra) = row.find(|field| !field.is_empty()) {
-            return Err(format!("item 4 of a range is not read: {}", excerpt(extra)));
-        }
-        if numbers[1] < numbers[0] {
-            return Err(format!("the range ends before it begins: {} to {}", numbers[0], numbers[1]));
-        }
-        self.ranges.push((numbers, at));
-        Ok(())
-    }
-}
-
-impl Faces {
-    fn add(&mut self, region: &[u8], face: &[u8], at: At) -> Result<(), (String, &'static str)> {
-        let face = match face {
-            b"" => 0,
-            [b'S' | b's', digit @ b'1'..=b'6'] => digit - b'0',
-            _ => return Err((format!("a brick has no face {}", excerpt(face)), FACE_REMEDY)),
-        };
-        if looks_numeric(region) {
-            let label =
-                lex::label(region).map_err(|fault| (format!("{} {}", excerpt(region), fault.text()), FACE_REMEDY))?;
-            self.labels.push((label, face, at));
-        } else {
-            let name = name(region).map_err(|message| (message, FACE_REMEDY))?;
-            self.names.push((name.into(), face, at));
-        }
-        Ok(())
-    }
-}
-
-fn name(field: &[u8]) -> Result<&str, String> {
-    match std::str::from_utf8(field).map(lex::unquoted) {
-        Ok("") => Err("a name is missing".into()),
-        Ok(name) => Ok(name),
-        Err(_) => Err(format!("{} is not UTF-8 text", excerpt(field))),
     }
 }

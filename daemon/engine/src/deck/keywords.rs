@@ -1,6 +1,6 @@
 //! What the reader knows about keywords: types of the table, look-up, and the uniform checks of parameters.
 //!
-//! The tables themselves stand in [`super::read_table`] (keywords that are read) and [`super::other_table`]
+//! The tables themselves stand in `model_table` and `step_table` (keywords that are read) and `other_table`
 //! (keywords that are known but not read).
 
 use std::sync::LazyLock;
@@ -8,8 +8,9 @@ use std::sync::LazyLock;
 use rustc_hash::FxHashMap;
 
 use super::lex::key;
+use super::model_table::MODEL;
 use super::other_table::OTHER;
-use super::read_table::READ;
+use super::step_table::STEPS;
 
 /// What becomes of a keyword, a parameter or a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +174,7 @@ impl Keyword {
 
 /// Every keyword that the reader knows: those it reads first, then the others.
 pub fn keywords() -> impl Iterator<Item = &'static Keyword> {
-    READ.iter().chain(OTHER.iter())
+    MODEL.iter().chain(STEPS).chain(OTHER)
 }
 
 static BY_KEY: LazyLock<FxHashMap<String, &'static Keyword>> =

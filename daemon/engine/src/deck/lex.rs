@@ -4,20 +4,20 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberFault {
     /// Not written as a number.
-    NotANumber,
+    Unreadable,
     /// Written as a number that no double holds, or as NaN or infinity.
     NotFinite,
     /// Not a label: labels run from 1 to 4294967295.
-    NotALabel,
+    NoLabel,
 }
 
 impl NumberFault {
     /// The fault as the end of a sentence.
     pub fn text(self) -> &'static str {
         match self {
-            Self::NotANumber => "is not a number",
+            Self::Unreadable => "is not a number",
             Self::NotFinite => "is not a finite number",
-            Self::NotALabel => "is not a whole number above 0",
+            Self::NoLabel => "is not a whole number above 0",
         }
     }
 }
@@ -64,12 +64,12 @@ pub fn real(field: &[u8]) -> Result<f64, NumberFault> {
     if !digits.first().is_some_and(|&b| b.is_ascii_digit() || b == b'.') {
         let lower = digits.to_ascii_lowercase();
         let not_finite = matches!(lower.as_slice(), b"nan" | b"inf" | b"infinity");
-        return Err(if not_finite { NumberFault::NotFinite } else { NumberFault::NotANumber });
+        return Err(if not_finite { NumberFault::NotFinite } else { NumberFault::Unreadable });
     }
-    let text = std::str::from_utf8(field).map_err(|_| NumberFault::NotANumber)?;
+    let text = std::str::from_utf8(field).map_err(|_| NumberFault::Unreadable)?;
     let value = match text.parse::<f64>() {
         Ok(value) => value,
-        Err(_) => text.replace(['d', 'D'], "e").parse::<f64>().map_err(|_| NumberFault::NotANumber)?,
+        Err(_) => text.replace(['d', 'D'], "e").parse::<f64>().map_err(|_| NumberFault::Unreadable)?,
     };
     if value.is_finite() { Ok(value) } else { Err(NumberFault::NotFinite) }
 }
@@ -80,11 +80,11 @@ pub fn label(field: &[u8]) -> Result<u32, NumberFault> {
     for &byte in field {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
-            return Err(NumberFault::NotALabel);
+            return Err(NumberFault::NoLabel);
         }
-        value = value.checked_mul(10).and_then(|v| v.checked_add(u32::from(digit))).ok_or(NumberFault::NotALabel)?;
+        value = value.checked_mul(10).and_then(|v| v.checked_add(u32::from(digit))).ok_or(NumberFault::NoLabel)?;
     }
-    if value == 0 { Err(NumberFault::NotALabel) } else { Ok(value) }
+    if value == 0 { Err(NumberFault::NoLabel) } else { Ok(value) }
 }
 
 /// Whether a field is meant as a number rather than a name.
@@ -118,18 +118,22 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     nearest.map(|(_, candidate)| candidate)
 }
 
+/// Fewest insertions, deletions, replacements and exchanges of neighbours that turn one word into the other.
 fn edit_distance(a: &[char], b: &[char]) -> usize {
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let substitute = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = substitute.min(row[j] + 1).min(diagonal + 1);
+    let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let replaced = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = replaced.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(least);
         }
+        rows.push(row);
     }
-    row[b.len()]
+    rows[a.len()][b.len()]
 }
 
 #[cfg(test)]
@@ -161,13 +165,13 @@ mod tests {
     #[test]
     fn what_is_not_a_finite_number_is_refused() {
         for text in ["", "x", "1 2", "1..2", "0x10", "e5", "--1", "\u{661}"] {
-            assert_eq!(real(text.as_bytes()), Err(NumberFault::NotANumber), "{text}");
+            assert_eq!(real(text.as_bytes()), Err(NumberFault::Unreadable), "{text}");
         }
         for text in ["nan", "-inf", "Infinity", "1e999"] {
             assert_eq!(real(text.as_bytes()), Err(NumberFault::NotFinite), "{text}");
         }
         for text in ["0", "-1", "1.", "4294967296", "9a"] {
-            assert_eq!(label(text.as_bytes()), Err(NumberFault::NotALabel), "{text}");
+            assert_eq!(label(text.as_bytes()), Err(NumberFault::NoLabel), "{text}");
         }
         assert_eq!(label(b"4294967295"), Ok(u32::MAX));
     }

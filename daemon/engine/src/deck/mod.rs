@@ -10,10 +10,12 @@ mod collect;
 mod dialect;
 mod keywords;
 mod lex;
+mod members;
+mod model_table;
 mod other_table;
-mod read_table;
 mod report;
 mod source;
+mod step_table;
 mod summary;
 
 use std::io;

@@ -29,6 +29,8 @@ impl Builder<'_> {
                 if open {
                     behaviors.push((false, card.at));
                 }
+            } else if !card.keyword.is_read() {
+                // Reported already.
             } else if card.keyword.placement != Placement::Interaction {
                 open = false;
             } else if !open {
@@ -233,7 +235,7 @@ impl Builder<'_> {
         match self.model.dialect {
             Dialect::Abaqus => {
                 if row.fields.iter().skip(count).any(|field| !field.is_empty()) {
-                    let message = format!("the line has more than {count} items");
+                    let message = format!("the line has more than {}", items(count));
                     self.report.error(
                         row.at,
                         row.keyword,
@@ -247,7 +249,7 @@ impl Builder<'_> {
                     self.report.warning(
                         row.at,
                         row.keyword,
-                        format!("items behind the first {count} are ignored: {why}"),
+                        format!("what stands behind {} is ignored: {why}", items(count)),
                         "",
                     );
                 }
@@ -259,7 +261,7 @@ impl Builder<'_> {
     fn checked(&mut self, parameters: LawParameters, at: At) -> Option<LawParameters> {
         let violations = parameters.violations();
         for violation in &violations {
-            self.report.error(at, BEHAVIOR, violation.to_string(), "correct the data of the law");
+            self.report.error(at, BEHAVIOR, violation.to_string(), "correct the data line");
         }
         violations.is_empty().then_some(parameters)
     }
@@ -298,10 +300,10 @@ impl Builder<'_> {
                     );
                 }
                 let (Some(secondary), Some(primary)) = (secondary, primary) else { continue };
-                if self.pair_is_sound(&row, secondary, primary) {
-                    if let (Some(interaction), false) = (interaction, card.faulty) {
-                        self.push_pair(&row, secondary, primary, InteractionId(interaction));
-                    }
+                if self.pair_is_sound(&row, secondary, primary)
+                    && let (Some(interaction), false) = (interaction, card.faulty)
+                {
+                    self.push_pair(&row, secondary, primary, InteractionId(interaction));
                 }
             }
         }
@@ -379,5 +381,12 @@ impl Builder<'_> {
         }
         let place = self.map.place(row.at);
         self.model.pairs.push(ContactPair { name: pair_name, secondary, primary, interaction, place });
+    }
+}
+
+fn items(count: usize) -> String {
+    match count {
+        1 => "one item".into(),
+        count => format!("{count} items"),
     }
 }

@@ -50,11 +50,9 @@ pub fn arrange<'d>(cards: &'d [Card], report: &mut Report) -> Layout<'d> {
             _ => layout.place(card, open, report),
         }
     }
-    if open {
-        if let Some(step) = layout.steps.last() {
-            let message = "the step is not closed: the deck may have been cut off";
-            report.error(step.opening.at, STEP, message, "write *END STEP behind the step");
-        }
+    if let Some(step) = layout.steps.last().filter(|_| open) {
+        let message = "the step is not closed: the deck may have been cut off";
+        report.error(step.opening.at, STEP, message, "write *END STEP behind the step");
     }
     if layout.steps.is_empty() {
         let (message, remedy) = if cards.is_empty() {
@@ -74,9 +72,10 @@ impl<'d> Layout<'d> {
     fn place(&mut self, card: &'d Card, in_step: bool, report: &mut Report) {
         let name = card.keyword.name;
         if !card.keyword.is_read() {
-            // Reported already; kept in steps because a refused procedure explains a missing one.
-            if let (true, Some(step)) = (in_step, self.steps.last_mut()) {
-                step.cards.push(card);
+            // Reported already; kept because a refused keyword explains what is missing.
+            match self.steps.last_mut().filter(|_| in_step) {
+                Some(step) => step.cards.push(card),
+                None => self.model.push(card),
             }
             return;
         }
@@ -109,9 +108,21 @@ impl<'d> Layout<'d> {
     }
 }
 
-impl StepCards<'_> {
-    /// Whether the step has a procedure that was refused.
-    pub fn has_refused_procedure(&self) -> bool {
-        self.cards.iter().any(|card| matches!(card.keyword.effect, Effect::Refused(_)))
+impl Layout<'_> {
+    /// Whether a keyword was refused: then what looks superfluous may not be.
+    pub fn has_refused_keywords(&self) -> bool {
+        self.all.iter().any(is_refused)
     }
+}
+
+impl StepCards<'_> {
+    /// Whether a keyword of the step was refused: it may have been the procedure.
+    pub fn has_refused_keywords(&self) -> bool {
+        self.cards.iter().any(|card| is_refused(card))
+    }
+}
+
+/// Whether the keyword of a card is not supported.
+pub fn is_refused(card: &Card) -> bool {
+    matches!(card.keyword.effect, Effect::Refused(_))
 }

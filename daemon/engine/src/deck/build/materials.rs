@@ -4,9 +4,10 @@ use crate::model::{Amplitude, AmplitudeClock, Material, MaterialId, SetId, Solid
 
 use super::super::card::{Body, Card, DataLine, Row};
 use super::super::keywords::Placement;
+use super::super::lex::real;
 use super::super::report::{At, Report, excerpt};
 use super::Builder;
-use super::layout::Layout;
+use super::layout::{Layout, is_refused};
 
 const MATERIAL: &str = "*MATERIAL";
 const SECTION: &str = "*SOLID SECTION";
@@ -41,6 +42,8 @@ struct Draft {
     /// Modulus and ratio; the inner value is missing when they were given but bad.
     elastic: Option<Option<(f64, f64)>>,
     density: Option<f64>,
+    /// A keyword that describes the material was refused.
+    refused: bool,
 }
 
 impl Builder<'_> {
@@ -53,7 +56,13 @@ impl Builder<'_> {
                     open = false;
                     let Some(name) = card.parameters.value("NAME") else { continue };
                     if self.materials.enter(name).1 {
-                        drafts.push(Draft { name: name.into(), at: card.at, elastic: None, density: None });
+                        drafts.push(Draft {
+                            name: name.into(),
+                            at: card.at,
+                            elastic: None,
+                            density: None,
+                            refused: false,
+                        });
                         open = true;
                     } else {
                         self.report.error(
@@ -73,12 +82,17 @@ impl Builder<'_> {
                         "write it under *MATERIAL",
                     ),
                 },
-                _ => open = false,
+                _ if card.keyword.is_read() => open = false,
+                _ => {
+                    if let Some(draft) = drafts.last_mut().filter(|_| open && is_refused(card)) {
+                        draft.refused = true;
+                    }
+                }
             }
         }
         for (position, draft) in (0..).zip(drafts) {
             let complete = draft.elastic.flatten();
-            if draft.elastic.is_none() {
+            if draft.elastic.is_none() && !draft.refused {
                 let message = format!("material {} has no *ELASTIC", draft.name);
                 self.report.error(draft.at, MATERIAL, message, "add *ELASTIC with Young's modulus and Poisson's ratio");
             }
@@ -220,12 +234,11 @@ impl Draft {
 }
 
 fn amplitude_points(card: &Card, report: &mut Report) -> Option<Vec<(f64, f64)>> {
-    if let Some(smooth) = card.parameters.value("SMOOTH") {
-        if super::super::lex::real(smooth.as_bytes()) != Ok(0.0) {
-            let message = format!("SMOOTH={} is not supported and would change the answer", excerpt(smooth.as_bytes()));
-            report.error(card.at, AMPLITUDE, message, "leave it out: the curve is straight between its points");
-            return None;
-        }
+    let smooth = card.parameters.value("SMOOTH").filter(|smooth| real(smooth.as_bytes()) != Ok(0.0));
+    if let Some(smooth) = smooth {
+        let message = format!("SMOOTH={} is not supported and would change the answer", excerpt(smooth.as_bytes()));
+        report.error(card.at, AMPLITUDE, message, "leave it out: the curve is straight between its points");
+        return None;
     }
     let mut points: Vec<(f64, f64)> = Vec::new();
     for line in lines(card) {
@@ -240,12 +253,10 @@ fn amplitude_points(card: &Card, report: &mut Report) -> Option<Vec<(f64, f64)>>
         for i in (0..row.fields.len()).step_by(2) {
             let time = row.real(i, "time", None, report)?;
             let value = row.real(i + 1, "value", None, report)?;
-            if let Some(&(before, _)) = points.last() {
-                if time <= before {
-                    let message = format!("time {time} does not exceed the time before, {before}");
-                    report.error(row.at, AMPLITUDE, message, "times must increase from pair to pair");
-                    return None;
-                }
+            if let Some(&(before, _)) = points.last().filter(|&&(before, _)| time <= before) {
+                let message = format!("time {time} does not exceed the time before, {before}");
+                report.error(row.at, AMPLITUDE, message, "times must increase from pair to pair");
+                return None;
             }
             points.push((time, value));
         }

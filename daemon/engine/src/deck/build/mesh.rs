@@ -6,8 +6,8 @@ use crate::model::{Dialect, Element, ElementId, ElementKind, Mesh, NodeId};
 
 use super::super::card::{Deck, ElementTable, NodeTable};
 use super::super::report::{At, Report};
-use super::jacobian::jacobian_min;
 use super::names::Labels;
+use crate::element::brick::jacobian_min;
 
 const NODE: &str = "*NODE";
 const ELEMENT: &str = "*ELEMENT";
@@ -187,6 +187,7 @@ fn resolve_corners(
             return None;
         }
     }
+    // Positive wherever it is evaluated: coordinates are bounded, so it is never NaN.
     let jacobian = jacobian_min(&nodes.map(|node| mesh.nodes[node.index()]));
     if jacobian <= 0.0 {
         let message =

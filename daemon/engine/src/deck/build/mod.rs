@@ -1,7 +1,6 @@
 //! Second pass: cards to a model. References are followed in any direction, so the order of definitions does not matter.
 
 mod contact;
-mod jacobian;
 mod layout;
 mod loads;
 mod materials;
@@ -86,7 +85,9 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_steps(&layout);
     builder.check_prescribed(&layout);
     builder.check_loads();
-    builder.check_unused(&layout);
+    if !layout.has_refused_keywords() {
+        builder.check_unused(&layout);
+    }
     builder.model
 }
 

@@ -76,7 +76,7 @@ impl Builder<'_> {
     fn procedure(&mut self, step: &StepCards<'_>, increments_max: u32) -> StaticControl {
         let mut statics = step.cards.iter().filter(|card| card.keyword.name == STATIC);
         let Some(card) = statics.next() else {
-            if !step.has_refused_procedure() {
+            if !step.has_refused_keywords() {
                 self.report.error(step.opening.at, STEP, "the step has no procedure", "write *STATIC behind *STEP");
             }
             return StaticControl {

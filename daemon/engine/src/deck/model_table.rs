@@ -1,20 +1,16 @@
-//! Keywords that are read, with every parameter that is known for them.
+//! Keywords of the model part that are read, with every parameter that is known for them.
 
 use super::keywords::DataLines::{Elements, Faces, Fields, Forbidden, Members, Nodes, Text};
-use super::keywords::Effect::{Ignored, Read, Refused, Silent};
-use super::keywords::Placement::{Anywhere, Interaction, Material, Model, Step};
+use super::keywords::Effect::{Read, Refused};
+use super::keywords::Placement::{Anywhere, Interaction, Material, Model};
 use super::keywords::{Keyword, Parameter as P};
 
 const WRITE_INTO_DECK: &str = "bring the lines in with *INCLUDE under the keyword";
 const FLAT_DECK: &str = "write the deck without parts and assemblies";
 const STATICS_ONLY: &str = "only static steps are solved";
-const OUTPUT_DEFAULT: &str = "results are written at every increment that FREQUENCY selects";
-const OUTPUT_FIXED: &str = "the layout of the result files is fixed";
-const SMALL_MOTION: &str = "displacements are small, so loads keep their directions";
-const LOAD_SIMPLE: &str = "give the load as plain values per set";
 
-/// Keywords that are read.
-pub const READ: &[Keyword] = &[
+/// Keywords that describe the model.
+pub const MODEL: &[Keyword] = &[
     Keyword::read("*HEADING", Anywhere, Text, &[P::silent("SPARSE"), P::silent("UNSYMM")]),
     Keyword::read(
         "*INCLUDE",
@@ -293,22 +289,11 @@ pub const READ: &[Keyword] = &[
                 "TYPE",
                 &[
                     ("NODETOSURFACE", Read),
-                    (
-                        "SURFACETOSURFACE",
-                        Refused(
-                            "surface-to-surface contact is not solved; write TYPE=NODE TO SURFACE if that is meant",
-                        ),
-                    ),
-                    ("MORTAR", Refused("mortar contact is not solved; write TYPE=NODE TO SURFACE if that is meant")),
-                    ("LINMORTAR", Refused("mortar contact is not solved; write TYPE=NODE TO SURFACE if that is meant")),
-                    (
-                        "PGLINMORTAR",
-                        Refused("mortar contact is not solved; write TYPE=NODE TO SURFACE if that is meant"),
-                    ),
-                    (
-                        "MASSLESS",
-                        Refused("massless contact is not solved; write TYPE=NODE TO SURFACE if that is meant"),
-                    ),
+                    ("SURFACETOSURFACE", Refused("write TYPE=NODE TO SURFACE if that is meant")),
+                    ("MORTAR", Refused("write TYPE=NODE TO SURFACE if that is meant")),
+                    ("LINMORTAR", Refused("write TYPE=NODE TO SURFACE if that is meant")),
+                    ("PGLINMORTAR", Refused("write TYPE=NODE TO SURFACE if that is meant")),
+                    ("MASSLESS", Refused("write TYPE=NODE TO SURFACE if that is meant")),
                 ],
             ),
             P::flag("SMALL SLIDING"),
@@ -327,246 +312,6 @@ pub const READ: &[Keyword] = &[
             P::refused("MECHANICAL CONSTRAINT", "explicit contact is not solved"),
             P::refused("WEIGHT", "explicit contact is not solved"),
             P::refused("OP", "a pair acts in every step"),
-        ],
-    ),
-    Keyword::read(
-        "*STEP",
-        Anywhere,
-        Text,
-        &[
-            P::value("NAME"),
-            P::value("INC"),
-            P::one_of("NLGEOM", &[("", Read), ("YES", Read), ("NO", Silent)]),
-            P::one_of(
-                "AMPLITUDE",
-                &[
-                    ("RAMP", Read),
-                    ("STEP", Refused("give the loads of the step an *AMPLITUDE that is 1 from time 0 on")),
-                ],
-            ),
-            P::one_of("UNSYMM", &[("YES", Silent), ("NO", Silent), ("", Silent)]),
-            P::silent("EXTRAPOLATION"),
-            P::silent("CONVERT SDI"),
-            P::silent("SOLVER"),
-            P::refused("PERTURBATION", "write the step as a general step"),
-        ],
-    ),
-    Keyword::read("*END STEP", Step, Forbidden, &[]),
-    Keyword::read(
-        "*STATIC",
-        Step,
-        Fields,
-        &[
-            P::one_of("DIRECT", &[("", Read), ("NOSTOP", Refused("increments that do not converge stop the step"))]),
-            P::ignored("SOLVER", "the solver is chosen by --path"),
-            P::silent("LONG TERM"),
-            P::silent("ADIABATIC"),
-            P::refused("STABILIZE", "hold every body by boundary conditions or contact"),
-            P::refused("ALLSDTOL", "hold every body by boundary conditions or contact"),
-            P::refused("RIKS", "prescribe displacements instead"),
-            P::refused("FULLY PLASTIC", "only elastic bodies are solved"),
-            P::refused("CONTINUE", "hold every body by boundary conditions or contact"),
-            P::refused("TIME RESET", "total time runs on from step to step"),
-            P::refused("TOTAL TIME AT START", "total time starts at 0"),
-        ],
-    ),
-    Keyword::read(
-        "*CLOAD",
-        Step,
-        Fields,
-        &[
-            P::one_of("OP", &[("MOD", Read), ("NEW", Read)]),
-            P::value("AMPLITUDE"),
-            P::silent("REGION TYPE"),
-            P::ignored("FOLLOWER", SMALL_MOTION),
-            P::refused("CYCLIC MODE", STATICS_ONLY),
-            P::refused("LOAD CASE", STATICS_ONLY),
-            P::refused("REAL", STATICS_ONLY),
-            P::refused("IMAGINARY", STATICS_ONLY),
-            P::refused("TIME DELAY", "put the delay into the amplitude"),
-            P::refused("SECTOR", "write the values of each sector"),
-            P::refused("SUBMODEL", LOAD_SIMPLE),
-            P::refused("STEP", LOAD_SIMPLE),
-            P::refused("DATA SET", LOAD_SIMPLE),
-            P::refused("USER", LOAD_SIMPLE),
-            P::refused("OMEGA0", LOAD_SIMPLE),
-        ],
-    ),
-    Keyword::read(
-        "*DLOAD",
-        Step,
-        Fields,
-        &[
-            P::one_of("OP", &[("MOD", Read), ("NEW", Read)]),
-            P::value("AMPLITUDE"),
-            P::silent("REGION TYPE"),
-            P::silent("CONSTANT RESULTANT"),
-            P::ignored("FOLLOWER", SMALL_MOTION),
-            P::refused("ORIENTATION", "give the direction in global axes"),
-            P::refused("REF NODE", LOAD_SIMPLE),
-            P::refused("CYCLIC MODE", STATICS_ONLY),
-            P::refused("LOAD CASE", STATICS_ONLY),
-            P::refused("REAL", STATICS_ONLY),
-            P::refused("IMAGINARY", STATICS_ONLY),
-            P::refused("TIME DELAY", "put the delay into the amplitude"),
-            P::refused("SECTOR", "write the values of each sector"),
-            P::refused("SUBMODEL", LOAD_SIMPLE),
-            P::refused("USER", LOAD_SIMPLE),
-        ],
-    ),
-    Keyword::read(
-        "*DSLOAD",
-        Step,
-        Fields,
-        &[
-            P::one_of("OP", &[("MOD", Read), ("NEW", Read)]),
-            P::value("AMPLITUDE"),
-            P::silent("REGION TYPE"),
-            P::silent("CONSTANT RESULTANT"),
-            P::ignored("FOLLOWER", SMALL_MOTION),
-            P::refused("ORIENTATION", "give the direction in global axes"),
-            P::refused("REF NODE", LOAD_SIMPLE),
-            P::refused("CYCLIC MODE", STATICS_ONLY),
-            P::refused("LOAD CASE", STATICS_ONLY),
-            P::refused("REAL", STATICS_ONLY),
-            P::refused("IMAGINARY", STATICS_ONLY),
-            P::refused("SUBMODEL", LOAD_SIMPLE),
-            P::refused("USER", LOAD_SIMPLE),
-        ],
-    ),
-    Keyword::output(
-        "*NODE PRINT",
-        Fields,
-        &[
-            P::value("NSET"),
-            P::value("FREQUENCY"),
-            P::one_of("TOTALS", &[("NO", Read), ("YES", Read), ("ONLY", Read), ("", Read)]),
-            P::one_of("GLOBAL", &[("YES", Silent), ("NO", Ignored("values are written in global directions"))]),
-            P::one_of("SUMMARY", &[("YES", Silent), ("NO", Silent)]),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-            P::ignored("NUMBER INTERVAL", OUTPUT_DEFAULT),
-        ],
-    ),
-    Keyword::output(
-        "*NODE FILE",
-        Fields,
-        &[
-            P::value("NSET"),
-            P::value("FREQUENCY"),
-            P::one_of("GLOBAL", &[("YES", Silent), ("NO", Ignored("values are written in global directions"))]),
-            P::ignored("OUTPUT", OUTPUT_FIXED),
-            P::ignored("CONTACT ELEMENTS", OUTPUT_FIXED),
-            P::ignored("LAST ITERATIONS", OUTPUT_FIXED),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-        ],
-    ),
-    Keyword::output(
-        "*NODE OUTPUT",
-        Fields,
-        &[
-            P::value("NSET"),
-            P::one_of("VARIABLE", &[("ALL", Read), ("PRESELECT", Read)]),
-            P::ignored("EXTERIOR", "all nodes of the model are written"),
-            P::ignored("TRACER SET", OUTPUT_FIXED),
-        ],
-    ),
-    Keyword::output(
-        "*EL PRINT",
-        Fields,
-        &[
-            P::value("ELSET"),
-            P::value("FREQUENCY"),
-            P::ignored("POSITION", "stresses are written at the nodes"),
-            P::one_of("GLOBAL", &[("YES", Silent), ("NO", Ignored("values are written in global directions"))]),
-            P::ignored("TOTALS", "stresses have no totals"),
-            P::one_of("SUMMARY", &[("YES", Silent), ("NO", Silent)]),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-        ],
-    ),
-    Keyword::output(
-        "*EL FILE",
-        Fields,
-        &[
-            P::value("ELSET"),
-            P::value("FREQUENCY"),
-            P::ignored("POSITION", "stresses are written at the nodes"),
-            P::one_of("GLOBAL", &[("YES", Silent), ("NO", Ignored("values are written in global directions"))]),
-            P::ignored("DIRECTIONS", OUTPUT_FIXED),
-            P::ignored("OUTPUT", OUTPUT_FIXED),
-            P::ignored("SECTION FORCES", OUTPUT_FIXED),
-            P::ignored("NSET", "stresses are written at all nodes of the elements"),
-            P::ignored("CONTACT ELEMENTS", OUTPUT_FIXED),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-        ],
-    ),
-    Keyword::output(
-        "*ELEMENT OUTPUT",
-        Fields,
-        &[
-            P::value("ELSET"),
-            P::one_of("VARIABLE", &[("ALL", Read), ("PRESELECT", Read)]),
-            P::silent("DIRECTIONS"),
-            P::ignored("POSITION", "stresses are written at the nodes"),
-            P::ignored("EXTERIOR", "all elements are written"),
-        ],
-    ),
-    Keyword::output(
-        "*CONTACT PRINT",
-        Fields,
-        &[
-            P::value("FREQUENCY"),
-            P::ignored("NSET", "every contact point is written"),
-            P::ignored("MASTER", "every contact pair is written"),
-            P::ignored("SLAVE", "every contact pair is written"),
-            P::silent("TOTALS"),
-            P::one_of("SUMMARY", &[("YES", Silent), ("NO", Silent)]),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-        ],
-    ),
-    Keyword::output(
-        "*CONTACT FILE",
-        Fields,
-        &[
-            P::value("FREQUENCY"),
-            P::ignored("NSET", "every contact point is written"),
-            P::ignored("MASTER", "every contact pair is written"),
-            P::ignored("SLAVE", "every contact pair is written"),
-            P::ignored("CONTACT ELEMENTS", OUTPUT_FIXED),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-        ],
-    ),
-    Keyword::output(
-        "*CONTACT OUTPUT",
-        Fields,
-        &[
-            P::one_of("VARIABLE", &[("ALL", Read), ("PRESELECT", Read)]),
-            P::ignored("NSET", "every contact point is written"),
-            P::ignored("MASTER", "every contact pair is written"),
-            P::ignored("SLAVE", "every contact pair is written"),
-            P::ignored("SURFACE", "every contact pair is written"),
-            P::ignored("SECOND SURFACE", "every contact pair is written"),
-            P::ignored("CPSET", "every contact pair is written"),
-            P::ignored("GENERAL CONTACT", "every contact pair is written"),
-        ],
-    ),
-    Keyword::output(
-        "*OUTPUT",
-        Fields,
-        &[
-            P::flag("FIELD"),
-            P::flag("HISTORY"),
-            P::value("FREQUENCY"),
-            P::one_of("VARIABLE", &[("ALL", Read), ("PRESELECT", Read)]),
-            P::one_of("OP", &[("NEW", Read), ("ADD", Read), ("REPLACE", Read)]),
-            P::silent("NAME"),
-            P::ignored("DIAGNOSTICS", "reports of the iterations are always written"),
-            P::ignored("NUMBER INTERVAL", OUTPUT_DEFAULT),
-            P::ignored("TIME INTERVAL", OUTPUT_DEFAULT),
-            P::ignored("TIME MARKS", OUTPUT_DEFAULT),
-            P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-            P::ignored("FILTER", "values are written as they are"),
-            P::ignored("SENSOR", "values are written as they are"),
-            P::ignored("MODE LIST", STATICS_ONLY),
         ],
     ),
 ];
