@@ -1,9 +1,9 @@
 """FMUs for the tests: packed once per session, unpacked once."""
 
-import generate_deck
 import pytest
-import support
 
+import generate_deck
+import support
 from cosimulation.raw import Fmu, Instance
 
 PUNCH = 4
@@ -35,7 +35,7 @@ def law_file(work):
 def deck_path(work):
     """A small punch, pressed in fixed increments."""
     path = work / "punch.inp"
-    generate_deck.main(["punch", str(PUNCH), str(path), "--increments", str(INCREMENTS)])
+    generate_deck.generate(["punch", str(PUNCH), str(path), "--increments", str(INCREMENTS)])
     return path
 
 

@@ -109,7 +109,7 @@ impl DeckBackend {
         }
         let outcome = self.simulation.advance(target, &mut ()).map_err(|error| Fault::Refused(error.to_string()))?;
         self.observe(values);
-        self.judge(outcome)
+        self.judge(outcome, values)
     }
 
     fn observe(&mut self, values: &mut Values) {
@@ -122,9 +122,14 @@ impl DeckBackend {
         self.simulation.observe(outputs);
     }
 
-    fn judge(&self, outcome: AdvanceOutcome) -> Result<(), Fault> {
+    fn judge(&self, outcome: AdvanceOutcome, values: &Values) -> Result<(), Fault> {
         let reason = match outcome {
-            AdvanceOutcome::Reached => return Ok(()),
+            AdvanceOutcome::Reached => match values.reals.iter().position(|value| !value.is_finite()) {
+                None => return Ok(()),
+                Some(at) => {
+                    format!("{} is not a finite number: the inputs are out of range", self.table.variables()[at].name)
+                }
+            },
             AdvanceOutcome::Cancelled => "the advance was cancelled".to_string(),
             AdvanceOutcome::Stopped { reason } => reason,
         };
@@ -153,7 +158,7 @@ impl Backend for DeckBackend {
             self.state.origin = self.simulation.time();
         }
         self.observe(values);
-        self.judge(outcome)
+        self.judge(outcome, values)
     }
 
     fn refresh(&mut self, values: &mut Values) -> Result<(), Fault> {
