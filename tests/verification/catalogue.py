@@ -89,6 +89,24 @@ CASES = [
         "0.5 %",
     ),
     Case(
+        "history",
+        "The solver shall ramp, keep and remove displacements and loads from step to step and follow amplitudes.",
+        "closed form of a column of springs at every increment",
+        "1e-11",
+    ),
+    Case(
+        "oracle",
+        "The solver shall find the contact state that enumeration of all active sets finds.",
+        "brute force on 500 seeded random decks",
+        "1e-9",
+    ),
+    Case(
+        "oracle-exponential",
+        "The solver shall find the minimum of the potential of structure and exponential contact.",
+        "convex minimisation on 60 seeded random decks",
+        "1e-9",
+    ),
+    Case(
         "increments",
         "The solver shall reach the same end state in one increment, in 20, and in automatic ones.",
         "itself: the problem is path independent",
