@@ -205,6 +205,6 @@ class Client:
 def _parameter(value: LawParameter) -> str:
     if isinstance(value, str):
         return value
-    if isinstance(value, (int, float)):
-        return repr(float(value))
-    return ",".join(f"{float(p)!r}:{float(h)!r}" for p, h in value)
+    if isinstance(value, Sequence):
+        return ",".join(f"{float(point[0])!r}:{float(point[1])!r}" for point in value)
+    return repr(float(value))

@@ -301,7 +301,9 @@ class Frames:
         self._timeout = timeout
         self._waiting: queue.Queue[zenoh.Sample | None] = queue.Queue(FRAMES_WAITING)
         zenoh_session = session._client._zenoh
-        self._subscriber = zenoh_session.declare_subscriber(session._key(f"frame/{field}"), self._arrived)
+        # Not through a thread of Python's: a program that forgets to close must still be able to end.
+        handler = zenoh.handlers.Callback(self._arrived, indirect=False)
+        self._subscriber = zenoh_session.declare_subscriber(session._key(f"frame/{field}"), handler)
         # One exchange on the same link: once it is answered, the daemon knows of the subscription.
         session._ask("ports", Ports)
 

@@ -11,7 +11,7 @@ use overclosure_protocol::message::{
 };
 
 use crate::call::{Patience, REPLY_BYTES_MAX, Request, call};
-use crate::network::{Side, zenoh_config};
+use crate::network::{Side, zenoh_config, zenoh_text};
 use crate::{CallError, Session};
 
 /// How to reach a daemon.
@@ -64,7 +64,7 @@ impl Client {
         let config = zenoh_config(&side, REPLY_BYTES_MAX as u64).map_err(CallError::transport)?;
         let zenoh = zenoh::open(config)
             .await
-            .map_err(|e| CallError::transport(format!("cannot connect to {}: {e}", options.endpoint)))?;
+            .map_err(|e| CallError::transport(format!("cannot connect to {}: {}", options.endpoint, zenoh_text(&e))))?;
         let request = Request::bare(key::daemon(options.daemon.as_deref().unwrap_or("*"), DaemonVerb::Info));
         let patience = Patience { timeout: options.timeout, attempts: options.attempts };
         let info = call(&zenoh, &request, patience).await?;

@@ -45,10 +45,30 @@ pub enum NetworkError {
     },
 }
 
+/// What zenoh says, without the places in its source code that it adds (` at /…/tcp.rs:61.`).
+pub fn zenoh_text(error: &zenoh::Error) -> String {
+    let text = error.to_string();
+    let mut plain = String::new();
+    let mut rest = text.as_str();
+    while let Some(at) = rest.find(" at /") {
+        plain += &rest[..at];
+        let place = &rest[at + 4..];
+        // The place ends with `.rs:LINE.`; anything else is text of its own and stays.
+        match place.find(".rs:").map(|rs| (rs, place[rs + 4..].find('.'))) {
+            Some((rs, Some(dot))) if !place[..rs].contains(' ') => rest = &place[rs + 4 + dot + 1..],
+            _ => {
+                plain += " at ";
+                rest = place;
+            }
+        }
+    }
+    plain + rest
+}
+
 /// Checks that a text is a locator of a transport that is compiled in.
 pub fn check_locator(locator: &str) -> Result<(), NetworkError> {
     let refuse = |detail: String| NetworkError::Locator { locator: locator.to_owned(), detail };
-    let endpoint: EndPoint = locator.parse().map_err(|e: zenoh::Error| refuse(e.to_string()))?;
+    let endpoint: EndPoint = locator.parse().map_err(|e: zenoh::Error| refuse(zenoh_text(&e)))?;
     match endpoint.protocol().as_str() {
         "tcp" | "unixsock-stream" => Ok(()),
         other => Err(refuse(format!("the transport {other} is not available; tcp and unixsock-stream are"))),
@@ -71,7 +91,7 @@ pub fn zenoh_config(side: &Side, message_bytes_max: u64) -> Result<Config, Netwo
         config.insert_json5(key, &value).map_err(|e| NetworkError::Setting {
             key,
             value: value.clone(),
-            detail: e.to_string(),
+            detail: zenoh_text(&e),
         })
     };
     set("mode", format!("{mode:?}"))?;
@@ -101,6 +121,13 @@ mod tests {
         for side in [client, daemon] {
             assert!(zenoh_config(&side, 1 << 20).is_ok(), "{side:?}");
         }
+    }
+
+    #[test]
+    fn places_in_source_code_are_left_out() {
+        let text = "no [in use (error 98) at /x/link-1.1/src/tcp.rs:61.] at /y/uni.rs:338.; look at /tmp/a b.rs";
+        let error: zenoh::Error = text.into();
+        assert_eq!(zenoh_text(&error), "no [in use (error 98)]; look at /tmp/a b.rs");
     }
 
     #[test]

@@ -23,7 +23,7 @@ use std::sync::atomic::AtomicU64;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use overclosure_client::network::{NetworkError, Side, zenoh_config};
+use overclosure_client::network::{NetworkError, Side, zenoh_config, zenoh_text};
 use overclosure_protocol::key;
 use tokio::signal::unix::{SignalKind, signal};
 use zenoh::handlers::FifoChannel;
@@ -80,10 +80,11 @@ enum ServeError {
     #[error(transparent)]
     Network(#[from] NetworkError),
     #[error(
-        "cannot listen on {endpoints}: {source}; is another daemon running there? --listen chooses another endpoint"
+        "cannot listen on {endpoints}: {}; is another daemon running there? --listen chooses another endpoint",
+        zenoh_text(source)
     )]
     Listen { endpoints: String, source: zenoh::Error },
-    #[error("cannot declare {key}: {source}")]
+    #[error("cannot declare {key}: {}", zenoh_text(source))]
     Declare { key: String, source: zenoh::Error },
 }
 

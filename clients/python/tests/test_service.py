@@ -1,0 +1,175 @@
+"""The package against a running daemon."""
+
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import zenoh
+
+import overclosure
+
+INPUT = "boundary.NTOP.3"
+FORCE = "contact.SSL_SMA.CFN3"
+
+
+def test_info_names_the_daemon_and_its_limits(client):
+    info = client.info()
+    assert info.product == "overclosure" and info.daemon == client.daemon
+    assert "exponential" in info.law_kinds and info.limits.sessions >= 1
+    assert client.health().status == "ready"
+
+
+def test_a_law_batch_agrees_with_its_formula(client):
+    c0, p0 = 0.01, 5.0
+    h = np.linspace(-2 * c0, 5 * c0, 1001)
+    curve = client.law("exponential", {"c0": c0, "p0": p0}, h)
+    np.testing.assert_array_equal(curve.overclosure, h)
+    x = (h + c0) / c0
+    expected = np.where(h > -c0, p0 / (math.e - 1) * x * np.expm1(x), 0.0)
+    np.testing.assert_allclose(curve.pressure, expected, rtol=1e-12, atol=1e-15)
+
+
+def test_a_table_may_be_pairs_or_text(client):
+    pairs = client.law("tabular", {"table": [(0, 0), (10, 0.1), (30, 0.2)]}, [0.05, 0.15])
+    text = client.law("tabular", {"table": "0:0,10:0.1,30:0.2"}, [0.05, 0.15])
+    np.testing.assert_allclose(pairs.pressure, [5.0, 20.0], rtol=1e-14)
+    np.testing.assert_array_equal(pairs.pressure, text.pressure)
+
+
+def test_a_refused_law_is_an_exception_with_its_reasons(client):
+    with pytest.raises(overclosure.Fault) as caught:
+        client.law("linear", {}, [0.0])
+    assert caught.value.code == "law_refused" and "stiffness" in caught.value.message
+    with pytest.raises(overclosure.Fault) as caught:
+        client.law("linear", {"stiffness": 1}, [math.nan])
+    assert caught.value.code == "not_finite"
+
+
+def test_a_session_steps_reads_and_goes_back_bit_for_bit(client, deck):
+    with client.open(deck) as session:
+        assert [p.name for p in session.ports.inputs] == [INPUT]
+        assert session.time == 0.0 and session.time_end == 1.0
+        start = session.checkpoint()
+        first = [session.step(i / 4, {INPUT: -0.005 * i}) for i in range(1, 5)]
+        assert all(s.status == "reached" and s.counts.increments >= 1 for s in first)
+        assert [s.time for s in first] == [0.25, 0.5, 0.75, 1.0]
+        assert first[3].outputs[FORCE] > first[0].outputs[FORCE] > 0
+        assert list(first[3].outputs.values()) == first[3].vector.tolist()
+        assert session.get(INPUT, FORCE) == {INPUT: -0.02, FORCE: first[3].outputs[FORCE]}
+
+        displacement, pressure = session.field("U"), session.field("CPRESS")
+        assert displacement.values.shape == (displacement.labels.size, 3)
+        assert pressure.values.shape == (4,) and (pressure.values > 0).all()
+
+        session.restore(start)
+        assert session.time == 0.0
+        again = [session.step(i / 4, [-0.005 * i]) for i in range(1, 5)]
+        assert [s.vector.tobytes() for s in again] == [s.vector.tobytes() for s in first]
+        assert session.report().steps[0].counts.increments == sum(s.counts.increments for s in again)
+    with pytest.raises(overclosure.Fault) as caught:
+        session.step(1.0)
+    assert caught.value.code == "unknown_session"
+
+
+def test_a_deck_may_be_text(client, deck):
+    with client.open(deck.read_text(), dialect="calculix", label="text") as session:
+        assert [s.label for s in client.load().sessions] == ["text"]
+        assert client.attach(session.id).outputs == session.outputs
+
+
+@pytest.mark.parametrize("text", ["", "\x00\x01\x02\n\xff", "*NODE\n1, 0, 0, 0\n*ELEM"])
+def test_a_bad_deck_is_an_exception_with_every_finding(client, text):
+    with pytest.raises(overclosure.Fault) as caught:
+        client.open(text)
+    assert caught.value.code == "deck_refused"
+    assert any(f.severity == "error" and f.message for f in caught.value.findings)
+
+
+@pytest.mark.parametrize(
+    ("code", "time", "inputs"),
+    [
+        ("not_finite", 0.75, {INPUT: math.nan}),
+        ("not_finite", math.inf, {}),
+        ("time_in_past", 0.25, {}),
+        ("unknown_port", 0.75, {"nothing": 1.0}),
+        ("unknown_port", 0.75, [0.0, 0.0]),
+    ],
+)
+def test_bad_steps_are_exceptions_and_change_nothing(client, deck, code, time, inputs):
+    with client.open(deck) as session:
+        session.step(0.5, {INPUT: -0.01})
+        before = session.get()
+        with pytest.raises(overclosure.Fault) as caught:
+            session.step(time, inputs)
+        assert caught.value.code == code and not caught.value.retryable
+        assert session.get() == before
+        assert session.step(0.75).status == "reached"
+
+
+def test_two_clients_of_one_session_learn_the_sequence(client, deck):
+    with client.open(deck) as first:
+        second = client.attach(first.id)
+        second.step(0.25)
+        with pytest.raises(overclosure.Fault) as caught:
+            first.step(0.5)
+        assert caught.value.code == "sequence_conflict" and caught.value.sequence_expected == 2
+        first.synchronize()
+        assert first.time == 0.25 and first.step(0.5).time == 0.5
+
+
+def test_frames_arrive_and_end_with_the_session(client, deck):
+    session = client.open(deck)
+    with session.frames(timeout=10) as outputs, session.frames("CPRESS", timeout=10) as fields:
+        steps = [session.step(i / 4, frames=["CPRESS"]) for i in range(1, 5)]
+        field = session.field("CPRESS")
+        session.close()
+        received = list(outputs)
+        assert [f.number for f in received] == list(range(1, len(received) + 1))
+        assert received[-1].time == 1.0 and received[-1].values.tobytes() == steps[-1].vector.tobytes()
+        for frame in fields:
+            if frame.time == 1.0:
+                break
+        np.testing.assert_array_equal(frame.labels, field.labels)
+        np.testing.assert_array_equal(frame.values, field.values)
+
+
+def test_waiting_for_a_frame_is_bounded(client, deck):
+    with client.open(deck) as session, session.frames() as frames, pytest.raises(TimeoutError):
+        frames.receive(timeout=0.05)
+
+
+def test_a_program_that_forgets_to_close_still_ends(endpoint, deck):
+    program = (
+        "import sys, overclosure\n"
+        "client = overclosure.connect(sys.argv[1])\n"
+        "session = client.open(sys.argv[2])\n"
+        "frames = session.frames()\n"
+        "session.step(0.5)\n"
+    )
+    subprocess.run([sys.executable, "-c", program, endpoint, deck], check=True, timeout=60)
+
+
+def test_nobody_there_is_said_soon():
+    with pytest.raises(overclosure.Unavailable):
+        overclosure.connect("tcp/127.0.0.1:1", timeout_connect=0.3, attempts=1)
+
+
+def test_a_tool_that_states_nothing_gets_readable_json(endpoint):
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
+    with zenoh.open(config) as session:
+        for selector, payload in [
+            ("overclosure/v1/*/law?kind=linear;stiffness=100;at=-1,0.5", None),
+            (
+                "overclosure/v1/*/law",
+                '{"kind": "linear", "parameters": [{"name": "k", "value": "100"}], "overclosure": [-1, 0.5]}',
+            ),
+        ]:
+            replies = list(session.get(selector, payload=payload))
+            assert len(replies) == 1 and replies[0].ok is not None
+            text = replies[0].ok.payload.to_string()
+            assert text.startswith("{\n") and json.loads(text)["pressure"] == [0.0, 50.0]
