@@ -1,4 +1,4 @@
-//! The C functions of FMI 2.0 co-simulation: the only file with `unsafe`.
+//! The C functions of FMI 2.0 co-simulation: the only file with `unsafe`, and long because there are 34 of them.
 //!
 //! Every function checks its pointers, asks the call-order table, and hands over to [`Instance`]. A panic ends at this
 //! border: the instance is condemned and the importer gets `fmi2Fatal`. Text goes to the logger finished, with every

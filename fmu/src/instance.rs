@@ -228,24 +228,25 @@ impl Instance {
             }
         }
         let immediate = self.phase == Phase::StepComplete && self.backend.feeds_through();
-        let before = immediate.then(|| self.values.clone());
+        let mut before = Vec::new();
         for (reference, value) in entries {
-            match (self.backend.table().slot(reference), value) {
-                (Some(Slot::Real(at)), Value::Real(value)) => self.values.reals[at] = value,
-                (Some(Slot::Integer(at)), Value::Integer(value)) => self.values.integers[at] = value,
-                (Some(Slot::String(at)), Value::String(value)) => self.values.strings[at] = value,
-                _ => continue,
+            let Some(previous) = self.replace(reference, value) else { continue };
+            if immediate {
+                before.push((reference, previous));
             }
             self.backend.note_set(reference as usize);
         }
         self.stale = true;
-        let Some(before) = before else {
+        if !immediate {
             return Status::Ok;
-        };
+        }
         match self.backend.refresh(&mut self.values) {
             Ok(()) => Status::Ok,
             Err(fault) => {
-                self.values = before;
+                // Backwards, so that a variable that was set twice gets its first value again.
+                for (reference, previous) in before.into_iter().rev() {
+                    self.replace(reference, previous);
+                }
                 self.refuse(call, format!("{fault}; the previous values are kept"))
             }
         }
@@ -375,6 +376,21 @@ impl Instance {
             }
         }
         Status::Ok
+    }
+
+    /// Puts a value into its slot and returns what was there.
+    fn replace(&mut self, reference: u32, value: Value) -> Option<Value> {
+        let values = &mut self.values;
+        match (self.backend.table().slot(reference)?, value) {
+            (Slot::Real(at), Value::Real(value)) => Some(Value::Real(std::mem::replace(&mut values.reals[at], value))),
+            (Slot::Integer(at), Value::Integer(value)) => {
+                Some(Value::Integer(std::mem::replace(&mut values.integers[at], value)))
+            }
+            (Slot::String(at), Value::String(value)) => {
+                Some(Value::String(std::mem::replace(&mut values.strings[at], value)))
+            }
+            _ => None,
+        }
     }
 
     fn check(&self, call: Call, reference: u32, value: &Value) -> Result<(), String> {

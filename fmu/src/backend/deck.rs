@@ -224,3 +224,54 @@ fn quote(findings: &[Diagnostic]) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One cube, pulled.
+    fn text(pull: &str) -> DeckText {
+        let deck = format!(
+            "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n\
+             *ELEMENT, TYPE=C3D8, ELSET=ALL\n1,1,2,3,4,5,6,7,8\n*NSET, NSET=BOTTOM\n1,2,3,4\n*NSET, NSET=TOP\n5,6,7,8\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n100., 0.\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*BOUNDARY\nBOTTOM,1,3\nTOP,1,2\n\
+             *STEP\n*STATIC\n1., 1.\n*BOUNDARY\nTOP,3,3,{pull}\n*NODE PRINT, NSET=TOP\nRF\n*END STEP\n"
+        );
+        DeckText { deck, ports: None, dialect: Default::default(), path: Default::default() }
+    }
+
+    #[test]
+    fn instances_of_one_deck_share_the_model_and_let_it_go() {
+        let first = prepare_shared(&text("0.1")).expect("a deck");
+        let second = prepare_shared(&text("0.1")).expect("a deck");
+        assert!(Arc::ptr_eq(&first, &second));
+        let other = prepare_shared(&text("0.2")).expect("a deck");
+        assert!(!Arc::ptr_eq(&first, &other));
+        let watch = Arc::downgrade(&first);
+        drop((first, second));
+        assert_eq!(watch.strong_count(), 0, "the registry keeps nothing alive");
+        assert!(prepare_shared(&text("0.1")).is_ok());
+    }
+
+    #[test]
+    fn a_wrong_deck_says_why() {
+        let mut wrong = text("0.1");
+        wrong.deck = wrong.deck.replace("MATERIAL=M\n*BOUNDARY", "MATERIAL=WOOD\n*BOUNDARY");
+        let error = prepare_shared(&wrong).err().expect("no such material");
+        assert!(error.contains("WOOD"), "{error}");
+    }
+
+    #[test]
+    fn damaged_state_changes_nothing() {
+        let mut backend = DeckBackend::new(prepare_shared(&text("0.3")).expect("a deck"));
+        let mut values = backend.table().start_values();
+        backend.begin(&mut values).expect("no preload");
+        backend.step(0.5, &mut values).expect("a step");
+        let bytes = backend.save();
+        for cut in 0..bytes.len() {
+            assert!(backend.restore(&bytes[..cut], &values).is_err(), "{cut}");
+        }
+        assert_eq!(backend.save(), bytes);
+        backend.restore(&bytes, &values).expect("its own state");
+    }
+}

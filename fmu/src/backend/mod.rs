@@ -20,7 +20,7 @@ pub trait Backend: Send {
     /// Start of the initialisation: everything that happens before the first communication point.
     fn begin(&mut self, values: &mut Values) -> Result<(), Fault>;
 
-    /// Brings outputs up to date with inputs and parameters at the present time.
+    /// Brings outputs up to date with inputs and parameters at the present time. When it is refused, no value has changed.
     fn refresh(&mut self, values: &mut Values) -> Result<(), Fault>;
 
     /// Advances to `elapsed` [time] after the start of the experiment and refreshes the outputs.
