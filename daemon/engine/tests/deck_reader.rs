@@ -663,6 +663,25 @@ fn repeated_findings_are_counted() {
 }
 
 #[test]
+fn decks_that_blow_up_are_refused_in_bounded_time() {
+    let chain: String = (1..6000).map(|n| format!("*NSET, NSET=N{n}\nN{}, {n}\n", n - 1)).collect();
+    let nodes: String = (100..20_100).map(|n| format!("{n}, 9., 9., {n}.\n")).collect();
+    let text = with("18, 0., 1., 2.\n", &format!("18, 0., 1., 2.\n{nodes}")) + &chain;
+    refuses(&text, "*NSET", "node 19 is not defined");
+    let repeated = "NALL, 1, 1\n".repeat(100_000);
+    let text = with("18, 0., 1., 2.\n", &format!("18, 0., 1., 2.\n{nodes}"));
+    refuses(
+        &text.replace("BOTTOM, 1, 3\n", &format!("BOTTOM, 1, 3\n{repeated}")),
+        "*BOUNDARY",
+        "would not fit into memory",
+    );
+    let words: String = (0..50_000).map(|n| format!("*WORD{n}\n")).collect();
+    assert!(read(&words).diagnostics.len() < 1100);
+    let ranges = "1, 4000000000\n".repeat(3000);
+    refuses(&(text + &format!("*NSET, NSET=R, GENERATE\n{ranges}")), "*NSET", "would not fit into memory");
+}
+
+#[test]
 fn what_is_not_a_deck_is_refused() {
     refuses("", "", "the deck is empty");
     refuses("** nothing but comments\n", "", "the deck is empty");

@@ -266,7 +266,7 @@ fn unknown_keyword(word: &str, at: At, report: &mut Report) {
         "*" => "the keyword behind the star is missing".to_string(),
         _ => "there is no such keyword".to_string(),
     };
-    let remedy = match lex::nearest(word, keywords().map(|keyword| keyword.name)) {
+    let remedy = match report.suggest(word, keywords().map(|keyword| keyword.name)) {
         Some(name) => format!("did you mean {name}?"),
         None => "a comment begins with two stars".to_string(),
     };
@@ -275,7 +275,7 @@ fn unknown_keyword(word: &str, at: At, report: &mut Report) {
 
 impl Header {
     fn unknown_parameter(&mut self, name: &str, at: At, report: &mut Report) {
-        let remedy = match lex::nearest(name, self.keyword.parameters.iter().map(|parameter| parameter.name)) {
+        let remedy = match report.suggest(name, self.keyword.parameters.iter().map(|parameter| parameter.name)) {
             Some(known) => format!("did you mean {known}?"),
             None => "leave it out if the answer does not depend on it".to_string(),
         };

@@ -104,8 +104,8 @@ pub fn key(name: &str) -> String {
 
 /// The candidate most like a misspelt word, when one is near enough to be meant.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    const LENGTH_MAX: usize = 80;
-    const CANDIDATES_MAX: usize = 20_000;
+    const LENGTH_MAX: usize = 40;
+    const CANDIDATES_MAX: usize = 5_000;
     let word: Vec<char> = key(word).chars().take(LENGTH_MAX).collect();
     let near = |candidate: &'a str| {
         let other: Vec<char> = key(candidate).chars().take(LENGTH_MAX).collect();

@@ -7,10 +7,17 @@ use std::hash::Hasher;
 
 use crate::diagnostic::{Diagnostic, Severity};
 
+use super::lex::nearest;
 use super::source::SourceMap;
 
 /// Findings of one kind that are listed singly; further ones are counted.
 pub const REPEATS_MAX: usize = 20;
+
+/// Findings that are listed at all; further ones are counted.
+pub const FINDINGS_MAX: usize = 1000;
+
+/// Misspelt words for which a likely one is searched.
+const SUGGESTIONS_MAX: usize = 100;
 
 /// Physical line of the deck, counted over all files in reading order. [`SourceMap`] knows file and line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,6 +49,9 @@ pub struct Report {
     items: Vec<Item>,
     kinds: FxHashMap<(u64, u32, u32), Kind>,
     errors: usize,
+    /// Findings beyond [`FINDINGS_MAX`], and whether an error is among them.
+    unlisted: (usize, bool),
+    suggestions: usize,
 }
 
 impl Report {
@@ -62,6 +72,11 @@ impl Report {
     pub fn push(&mut self, severity: Severity, at: At, keyword: &str, message: String, remedy: String) {
         if severity == Severity::Error {
             self.errors += 1;
+        }
+        if self.items.len() >= FINDINGS_MAX {
+            self.unlisted.0 += 1;
+            self.unlisted.1 |= severity == Severity::Error;
+            return;
         }
         let caller = Location::caller();
         let mut hasher = FxHasher::default();
@@ -91,8 +106,23 @@ impl Report {
         self.errors > 0
     }
 
+    /// The candidate most like a misspelt word, if one is near. After many searches none is found: the first ones help.
+    pub fn suggest<'c>(&mut self, word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+        self.suggestions += 1;
+        if self.suggestions > SUGGESTIONS_MAX {
+            return None;
+        }
+        nearest(word, candidates)
+    }
+
     /// Every finding, in the order of the deck; findings about the deck as a whole come last.
     pub fn finish(mut self, map: &SourceMap) -> Vec<Diagnostic> {
+        if self.unlisted.0 > 0 {
+            let severity = if self.unlisted.1 { Severity::Error } else { Severity::Warning };
+            let message = format!("{} more findings are not listed", self.unlisted.0);
+            let remedy = "mend those that are".to_string();
+            self.items.push(Item { at: At::DECK, severity, keyword: String::new(), message, remedy });
+        }
         self.items.sort_by_key(|item| item.at);
         let diagnostic = |item: Item| Diagnostic {
             severity: item.severity,
@@ -132,6 +162,17 @@ mod tests {
         assert_eq!(found.len(), REPEATS_MAX + 2);
         assert_eq!(found[3].message, "other");
         assert!(found.last().is_some_and(|d| d.message.starts_with("5 more findings")));
+    }
+
+    #[test]
+    fn the_list_of_findings_is_bounded() {
+        let mut report = Report::default();
+        for line in 1..=5000 {
+            report.error(At(line), &format!("*{line}"), "bad", "mend it");
+        }
+        let found = report.finish(&SourceMap::default());
+        assert_eq!(found.len(), FINDINGS_MAX + 1);
+        assert_eq!(found[FINDINGS_MAX].message, "4000 more findings are not listed");
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl Builder<'_> {
     /// Begins an interaction; false when it cannot be.
     fn interaction_card(&mut self, card: &Card) -> bool {
         let Some(name) = card.parameters.value("NAME") else { return false };
-        let (position, is_new) = self.interactions.enter(name);
+        let (position, is_new) = self.interactions.enter(name, card.at);
         if !is_new {
             let message = format!("surface interaction {name} is defined twice");
             self.report.error(card.at, INTERACTION, message, "rename or remove one");
@@ -341,6 +341,13 @@ impl Builder<'_> {
             self.report.error(row.at, PAIR, message, "define it by faces, or exchange the surfaces");
             return false;
         }
+        let size = |kind: &SurfaceKind| match kind {
+            SurfaceKind::Faces(faces) => 4 * faces.len(),
+            SurfaceKind::Nodes(nodes) => nodes.len(),
+        };
+        if !self.budget.take(size(&first.kind) + size(&second.kind), row.at, PAIR, self.report) {
+            return false;
+        }
         let on_primary: FxHashSet<NodeId> = self.surface_nodes(primary).into_iter().collect();
         let shared: Vec<NodeId> =
             self.surface_nodes(secondary).into_iter().filter(|node| on_primary.contains(node)).collect();
@@ -374,8 +381,7 @@ impl Builder<'_> {
     fn push_pair(&mut self, row: &Row<'_>, secondary: SurfaceId, primary: SurfaceId, interaction: InteractionId) {
         let name = |surface: SurfaceId| &self.model.mesh.surfaces[surface.index()].name;
         let pair_name = format!("{}_{}", name(secondary), name(primary));
-        let again = |pair: &ContactPair| (pair.secondary, pair.primary) == (secondary, primary);
-        if self.model.pairs.iter().any(again) {
+        if !self.pairs.insert((secondary, primary)) {
             self.report.error(row.at, PAIR, format!("the pair {pair_name} is given twice"), "remove one of the lines");
             return;
         }

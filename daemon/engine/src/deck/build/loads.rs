@@ -124,7 +124,7 @@ impl Builder<'_> {
 
     fn gravity(&mut self, row: &Row<'_>) -> Option<Load> {
         row.at_most(6, self.report);
-        let region = if row.text(0).is_empty() { Some(self.whole_model()) } else { self.element_region(row) };
+        let region = if row.text(0).is_empty() { self.whole_model(row) } else { self.element_region(row) };
         let magnitude = row.real(2, "acceleration", None, self.report);
         let mut vector = [0.0; 3];
         for (i, component) in vector.iter_mut().enumerate() {
@@ -161,13 +161,17 @@ impl Builder<'_> {
     }
 
     /// All elements, as a set that is added to the model.
-    fn whole_model(&mut self) -> Members<ElementId> {
-        let (position, is_new) = self.element_sets.enter(WHOLE_MODEL);
-        let members: Vec<_> = (0..self.model.mesh.elements.len() as u32).map(ElementId).collect();
+    fn whole_model(&mut self, row: &Row<'_>) -> Option<Members<ElementId>> {
+        let count = self.model.mesh.elements.len();
+        if !self.budget.take(4 * count, row.at, DLOAD, self.report) {
+            return None;
+        }
+        let (position, is_new) = self.element_sets.enter(WHOLE_MODEL, row.at);
+        let members: Vec<_> = (0..count as u32).map(ElementId).collect();
         if is_new {
             self.model.mesh.element_sets.push(ElementSet { name: WHOLE_MODEL.into(), elements: members.clone() });
         }
-        Members { region: Region::Set(SetId(position)), name: WHOLE_MODEL.into(), members }
+        Some(Members { region: Region::Set(SetId(position)), name: WHOLE_MODEL.into(), members })
     }
 
     fn has_density(&mut self, row: &Row<'_>, elements: &[ElementId]) {
@@ -200,6 +204,9 @@ impl Builder<'_> {
             self.report.error(row.at, DSLOAD, message, "define the surface by faces, or load its nodes with *CLOAD");
             return None;
         };
+        if !self.budget.take(4 * faces.len(), row.at, DSLOAD, self.report) {
+            return None;
+        }
         let kind = LoadKind::SurfacePressure { faces: faces.clone() };
         self.load(Region::Surface(SurfaceId(surface)), definition.name.clone(), kind, magnitude)
     }

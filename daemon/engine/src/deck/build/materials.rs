@@ -55,7 +55,7 @@ impl Builder<'_> {
                 MATERIAL => {
                     open = false;
                     let Some(name) = card.parameters.value("NAME") else { continue };
-                    if self.materials.enter(name).1 {
+                    if self.materials.enter(name, card.at).1 {
                         drafts.push(Draft {
                             name: name.into(),
                             at: card.at,
@@ -136,6 +136,9 @@ impl Builder<'_> {
                 let message = format!("element set {} is empty", elements.name);
                 self.report.warning(card.at, SECTION, message, "the section has no effect");
             }
+            if !self.budget.take(elements.elements.len(), card.at, SECTION, self.report) {
+                break;
+            }
             for element in &elements.elements {
                 match owner[element.index()] {
                     Some((other, _)) if other != material => {
@@ -169,7 +172,7 @@ impl Builder<'_> {
     pub(super) fn build_amplitudes(&mut self, layout: &Layout<'_>) {
         for card in layout.all.iter().filter(|card| card.keyword.name == AMPLITUDE) {
             let Some(name) = card.parameters.value("NAME") else { continue };
-            let (position, is_new) = self.amplitudes.enter(name);
+            let (position, is_new) = self.amplitudes.enter(name, card.at);
             if !is_new {
                 self.report.error(
                     card.at,

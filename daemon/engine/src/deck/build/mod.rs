@@ -1,5 +1,6 @@
 //! Second pass: cards to a model. References are followed in any direction, so the order of definitions does not matter.
 
+mod budget;
 mod contact;
 mod layout;
 mod loads;
@@ -13,11 +14,12 @@ mod sets;
 mod steps;
 mod surfaces;
 
-use crate::model::{Boundary, Dialect, Model};
+use crate::model::{Boundary, Dialect, Model, SurfaceId};
 
 use super::card::Deck;
 use super::report::{At, Report};
 use super::source::SourceMap;
+use budget::Budget;
 use layout::Layout;
 use names::{Labels, Names};
 use prescribed::Part;
@@ -41,6 +43,9 @@ struct Builder<'r> {
     refused_elements: FxHashSet<u32>,
     /// Lines of the elements.
     element_at: Vec<At>,
+    budget: Budget,
+    /// Surfaces of the contact pairs.
+    pairs: FxHashSet<(SurfaceId, SurfaceId)>,
     /// Lines of the boundaries of each step.
     step_lines: Vec<Vec<At>>,
     /// Lines of the loads of each step.
@@ -52,6 +57,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     let parts = mesh::build_mesh(&mut deck, dialect, report);
     let Deck { heading, cards, refused_nodes, refused_elements, incomplete, .. } = deck;
     let layout = layout::arrange(&cards, report);
+    let entities = parts.mesh.nodes.len() + parts.mesh.elements.len();
     let mut builder = Builder {
         model: Model { heading, dialect, mesh: parts.mesh, ..Model::default() },
         report,
@@ -67,6 +73,8 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         refused_nodes,
         refused_elements,
         element_at: parts.element_at,
+        budget: Budget::of(entities),
+        pairs: FxHashSet::default(),
         step_lines: Vec::new(),
         load_lines: Vec::new(),
     };
@@ -86,7 +94,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.check_prescribed(&layout);
     builder.check_loads();
     if !layout.has_refused_keywords() {
-        builder.check_unused(&layout);
+        builder.check_unused();
     }
     builder.model
 }
@@ -101,7 +109,7 @@ impl Builder<'_> {
     }
 
     /// Definitions that nothing uses are often misspelt references.
-    fn check_unused(&mut self, layout: &Layout<'_>) {
+    fn check_unused(&mut self) {
         let kinds = [
             (&self.materials, "*MATERIAL", "material"),
             (&self.interactions, "*SURFACE INTERACTION", "surface interaction"),
@@ -111,12 +119,8 @@ impl Builder<'_> {
         for (names, keyword, kind) in kinds {
             for position in names.unused() {
                 let name = names.written(position);
-                let is_it = |value: Option<&str>| value.is_some_and(|value| names.find(value) == Some(position));
-                let card =
-                    layout.all.iter().find(|card| card.keyword.name == keyword && is_it(card.parameters.value("NAME")));
-                let at = card.map_or(At::DECK, |card| card.at);
                 self.report.warning(
-                    at,
+                    names.at(position),
                     keyword,
                     format!("{kind} {name} is not used"),
                     "check the names that should refer to it",

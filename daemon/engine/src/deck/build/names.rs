@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::super::lex::{key, nearest};
+use super::super::lex::key;
 use super::super::report::{At, Report, excerpt};
 
 /// Names of one kind of thing, in order of definition.
@@ -11,6 +11,8 @@ pub struct Names {
     kind: &'static str,
     positions: FxHashMap<String, u32>,
     written: Vec<String>,
+    /// Lines of the first definitions.
+    at: Vec<At>,
     used: Vec<bool>,
     /// The definition was faulty, and that has been reported: whoever refers to it need not complain again.
     faulty: Vec<bool>,
@@ -19,15 +21,23 @@ pub struct Names {
 impl Names {
     /// No names yet.
     pub fn new(kind: &'static str) -> Self {
-        Self { kind, positions: FxHashMap::default(), written: Vec::new(), used: Vec::new(), faulty: Vec::new() }
+        Self {
+            kind,
+            positions: FxHashMap::default(),
+            written: Vec::new(),
+            at: Vec::new(),
+            used: Vec::new(),
+            faulty: Vec::new(),
+        }
     }
 
     /// Position of a name, added when it is new; whether it is new.
-    pub fn enter(&mut self, name: &str) -> (u32, bool) {
+    pub fn enter(&mut self, name: &str, at: At) -> (u32, bool) {
         let next = self.written.len() as u32;
         let position = *self.positions.entry(key(name)).or_insert(next);
         if position == next {
             self.written.push(name.to_string());
+            self.at.push(at);
             self.used.push(false);
             self.faulty.push(false);
         }
@@ -53,7 +63,8 @@ impl Names {
     #[track_caller]
     pub fn refer(&mut self, name: &str, at: At, keyword: &str, report: &mut Report) -> Option<u32> {
         let Some(position) = self.find(name) else {
-            report.error(at, keyword, self.missing(name), self.remedy(name));
+            let remedy = self.remedy(name, report);
+            report.error(at, keyword, self.missing(name), remedy);
             return None;
         };
         self.used[position as usize] = true;
@@ -66,8 +77,8 @@ impl Names {
     }
 
     /// Remedy for a name that does not exist.
-    pub fn remedy(&self, name: &str) -> String {
-        match nearest(name, self.written.iter().map(String::as_str)) {
+    pub fn remedy(&self, name: &str, report: &mut Report) -> String {
+        match report.suggest(name, self.written.iter().map(String::as_str)) {
             Some(near) => format!("did you mean {near}?"),
             None => "define it, or correct the name".to_string(),
         }
@@ -76,6 +87,11 @@ impl Names {
     /// The name as first written.
     pub fn written(&self, position: u32) -> &str {
         &self.written[position as usize]
+    }
+
+    /// Line of the first definition.
+    pub fn at(&self, position: u32) -> At {
+        self.at[position as usize]
     }
 
     /// Marks a name as used.
@@ -131,11 +147,11 @@ mod tests {
     #[test]
     fn names_are_found_in_any_case() {
         let mut names = Names::new("node set");
-        assert_eq!(names.enter("Top"), (0, true));
-        assert_eq!(names.enter("TOP"), (0, false));
+        assert_eq!(names.enter("Top", At(1)), (0, true));
+        assert_eq!(names.enter("TOP", At(2)), (0, false));
         assert_eq!(names.find(" top "), Some(0));
         assert_eq!(names.written(0), "Top");
-        assert_eq!(names.remedy("TOPP"), "did you mean Top?");
+        assert_eq!(names.remedy("TOPP", &mut Report::default()), "did you mean Top?");
     }
 
     #[test]

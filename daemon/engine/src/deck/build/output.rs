@@ -37,9 +37,9 @@ enum Subject {
 /// Variables that are written, in the spelling of the decks, and what a request without variables means.
 const NODE_VARIABLES: [&str; 8] = ["U", "RF", "U1", "U2", "U3", "RF1", "RF2", "RF3"];
 const ELEMENT_VARIABLES: [&str; 8] = ["S", "S11", "S22", "S33", "S12", "S13", "S23", "MISES"];
-const CONTACT_VARIABLES: [&str; 19] = [
+const CONTACT_VARIABLES: [&str; 18] = [
     "CSTR", "CSTRESS", "CPRESS", "CSHEAR1", "CSHEAR2", "CDIS", "CDISP", "COPEN", "CSLIP1", "CSLIP2", "CFN", "CFN1",
-    "CFN2", "CFN3", "CFNM", "CAREA", "CSTATUS", "CF", "CONT",
+    "CFN2", "CFN3", "CFNM", "CAREA", "CSTATUS", "CF",
 ];
 
 impl Subject {
@@ -85,6 +85,11 @@ impl Requests {
             elements: self.elements.iter().map(|(_, request)| request.clone()).collect(),
             contacts: self.contacts.iter().map(|(_, request)| request.clone()).collect(),
         }
+    }
+
+    /// Number of requests in force.
+    pub fn len(&self) -> usize {
+        self.nodes.len() + self.elements.len() + self.contacts.len()
     }
 
     fn clear(&mut self, family: Family, subject: Subject) {

@@ -124,36 +124,47 @@ impl Builder<'_> {
                 break;
             }
             self.one_line_per_direction(step);
-            let mut here = vec![0u8; prescribed.len()];
-            for boundary in &self.model.steps[step].boundaries {
-                boundary.nodes.iter().for_each(|node| here[node.index()] |= 1 << boundary.direction);
+            let cards: Vec<&Card> = cards.cards.iter().copied().filter(|card| card.keyword.name == BOUNDARY).collect();
+            if let Some(new) = cards.iter().find(|card| card.parameters.word("OP") == "NEW") {
+                self.nothing_is_freed(step, &prescribed, new.at);
             }
-            let card_at = |card: &&&Card| card.keyword.name == BOUNDARY;
-            let at = cards.cards.iter().find(card_at).map_or(cards.opening.at, |card| card.at);
-            let is_new = cards.cards.iter().filter(card_at).any(|card| card.parameters.word("OP") == "NEW");
-            if is_new {
-                let freed = first_of(&prescribed, &here);
-                if let Some((node, direction)) = freed {
-                    let message =
-                        format!("OP=NEW would free degree of freedom {direction} of node {}", self.label(node));
-                    self.report.error(
-                        at,
-                        BOUNDARY,
-                        message,
-                        "a step that frees nodes is not solved: use OP=MOD, or prescribe them again",
-                    );
+            let mut added = None;
+            for (line, boundary) in self.model.steps[step].boundaries.iter().enumerate() {
+                let bit = 1 << boundary.direction;
+                for node in &boundary.nodes {
+                    if prescribed[node.index()] & bit == 0 {
+                        added = added.or(Some((line, *node, boundary.direction)));
+                        prescribed[node.index()] |= bit;
+                    }
                 }
             }
-            let added = first_of(&here, &prescribed).filter(|_| step > 0);
-            if let Some((node, direction)) = added {
+            if let (Some((line, node, direction)), true) = (added, step > 0) {
                 let message = format!(
-                    "degree of freedom {direction} of node {} is prescribed here for the first time",
-                    self.label(node)
+                    "degree of freedom {} of node {} is prescribed here for the first time",
+                    direction + 1,
+                    self.label(node.index())
                 );
                 let remedy = "a step that holds further nodes is not solved: prescribe them from the first step on";
-                self.report.error(at, BOUNDARY, message, remedy);
+                self.report.error(self.step_lines[step][line], BOUNDARY, message, remedy);
             }
-            prescribed.iter_mut().zip(&here).for_each(|(before, now)| *before |= now);
+        }
+    }
+
+    /// `OP=NEW` may replace values, not free what was prescribed before.
+    fn nothing_is_freed(&mut self, step: usize, prescribed: &[u8], at: At) {
+        if !self.budget.take(prescribed.len(), at, BOUNDARY, self.report) {
+            return;
+        }
+        let mut here = vec![0u8; prescribed.len()];
+        for boundary in &self.model.steps[step].boundaries {
+            boundary.nodes.iter().for_each(|node| here[node.index()] |= 1 << boundary.direction);
+        }
+        let freed = prescribed.iter().zip(&here).map(|(before, now)| before & !now);
+        if let Some((node, bits)) = freed.enumerate().find(|&(_, bits)| bits != 0) {
+            let direction = bits.trailing_zeros() + 1;
+            let message = format!("OP=NEW would free degree of freedom {direction} of node {}", self.label(node));
+            let remedy = "a step that frees nodes is not solved: use OP=MOD, or prescribe them again";
+            self.report.error(at, BOUNDARY, message, remedy);
         }
     }
 
@@ -203,15 +214,8 @@ impl Builder<'_> {
                 boundary.nodes.retain(|node| lost.binary_search(node).is_err());
             }
         }
+        let mut kept = boundaries.iter().map(|boundary| !boundary.nodes.is_empty()).collect::<Vec<_>>().into_iter();
+        self.step_lines[step].retain(|_| kept.next().unwrap_or(true));
         boundaries.retain(|boundary| !boundary.nodes.is_empty());
     }
-}
-
-/// First node and degree of freedom (from 1) that is set in `these` and not in `those`.
-fn first_of(these: &[u8], those: &[u8]) -> Option<(usize, u32)> {
-    let differs = |(node, (here, there)): (usize, (&u8, &u8))| {
-        let bits = here & !there;
-        (bits != 0).then(|| (node, bits.trailing_zeros() + 1))
-    };
-    these.iter().zip(those).enumerate().find_map(differs)
 }

@@ -51,7 +51,10 @@ impl Builder<'_> {
             return Some(Members { region: Region::Label(label), name: label.to_string(), members: vec![node] });
         }
         let set = self.node_sets.refer(unquoted(row.text(0)), row.at, row.keyword, self.report)?;
-        let members = self.model.mesh.node_sets[set as usize].nodes.clone();
+        let nodes = &self.model.mesh.node_sets[set as usize].nodes;
+        // Up to three directions of a line hold the members.
+        let covered = self.budget.take(4 * nodes.len(), row.at, row.keyword, self.report);
+        let members = covered.then(|| nodes.clone())?;
         let name = self.node_sets.written(set).to_string();
         self.not_empty(members.is_empty(), "node", &name, row)?;
         Some(Members { region: Region::Set(SetId(set)), name, members })
@@ -65,7 +68,9 @@ impl Builder<'_> {
             return Some(Members { region: Region::Label(label), name: label.to_string(), members: vec![element] });
         }
         let set = self.element_sets.refer(unquoted(row.text(0)), row.at, row.keyword, self.report)?;
-        let members = self.model.mesh.element_sets[set as usize].elements.clone();
+        let elements = &self.model.mesh.element_sets[set as usize].elements;
+        let covered = self.budget.take(4 * elements.len(), row.at, row.keyword, self.report);
+        let members = covered.then(|| elements.clone())?;
         let name = self.element_sets.written(set).to_string();
         self.not_empty(members.is_empty(), "element", &name, row)?;
         Some(Members { region: Region::Set(SetId(set)), name, members })

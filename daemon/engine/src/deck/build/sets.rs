@@ -9,6 +9,7 @@ use crate::model::{ElementId, ElementSet, NodeId, NodeSet};
 use super::super::card::{Body, Card, Members};
 use super::super::report::{At, Report};
 use super::Builder;
+use super::budget::Budget;
 use super::layout::Layout;
 use super::mesh::Rows;
 use super::names::{Labels, Names};
@@ -39,7 +40,7 @@ struct Target<'a> {
 
 impl<'d> RawSets<'d> {
     fn add(&mut self, names: &mut Names, card: &Card, name: &str, contribution: Contribution<'d>) {
-        let (position, is_new) = names.enter(name);
+        let (position, is_new) = names.enter(name, card.at);
         if is_new {
             self.sets.push(Vec::new());
         }
@@ -50,8 +51,15 @@ impl<'d> RawSets<'d> {
     }
 
     /// Members of every set, ascending without repetition.
-    fn resolve(&self, names: &mut Names, target: &Target<'_>, report: &mut Report) -> Vec<Vec<u32>> {
-        let mut resolver = Resolver { raw: self, names, target, report, members: vec![None; self.sets.len()] };
+    fn resolve(
+        &self,
+        names: &mut Names,
+        target: &Target<'_>,
+        budget: &mut Budget,
+        report: &mut Report,
+    ) -> Vec<Vec<u32>> {
+        let members = vec![None; self.sets.len()];
+        let mut resolver = Resolver { raw: self, names, target, budget, report, members };
         for position in 0..self.sets.len() as u32 {
             resolver.resolve_from(position);
         }
@@ -63,6 +71,7 @@ struct Resolver<'a, 'd> {
     raw: &'a RawSets<'d>,
     names: &'a mut Names,
     target: &'a Target<'a>,
+    budget: &'a mut Budget,
     report: &'a mut Report,
     members: Vec<Option<Vec<u32>>>,
 }
@@ -70,11 +79,11 @@ struct Resolver<'a, 'd> {
 impl Resolver<'_, '_> {
     /// Resolves a set behind the sets that it names. The stack is explicit because decks nest sets at will.
     fn resolve_from(&mut self, start: u32) {
-        let mut open = vec![(start, self.named_sets(start))];
-        let mut on_stack = FxHashSet::from_iter([start]);
         if self.members[start as usize].is_some() {
             return;
         }
+        let mut open = vec![(start, self.named_sets(start))];
+        let mut on_stack = FxHashSet::from_iter([start]);
         while let Some((set, waiting)) = open.last_mut() {
             let set = *set;
             let Some((child, at, keyword)) = waiting.pop() else {
@@ -108,7 +117,8 @@ impl Resolver<'_, '_> {
                     Some(child) => found.push((child, *at, *keyword)),
                     None => {
                         self.names.mark_faulty(set);
-                        self.report.error(*at, keyword, self.names.missing(name), self.names.remedy(name));
+                        let remedy = self.names.remedy(name, self.report);
+                        self.report.error(*at, keyword, self.names.missing(name), remedy);
                     }
                 }
             }
@@ -154,6 +164,10 @@ impl Resolver<'_, '_> {
         for &([first, last, increment], at) in &members.ranges {
             let before = all.len();
             let count = u64::from((last - first) / increment) + 1;
+            let searched = count.min(self.target.labels.len() as u64) as usize;
+            if !self.budget.take(searched, at, keyword, self.report) {
+                return;
+            }
             if count <= 4 * self.target.labels.len() as u64 {
                 all.extend((first..=last).step_by(increment as usize).filter_map(|label| self.target.index.get(label)));
             } else {
@@ -171,13 +185,15 @@ impl Resolver<'_, '_> {
                 self.names.mark_faulty(set);
             }
         }
-        for (name, _) in &members.names {
+        for (name, at) in &members.names {
             let Some(child) = self.names.find(name) else { continue };
             self.names.mark_used(child);
             if self.names.is_faulty(child) {
                 self.names.mark_faulty(set);
             }
-            if let (Some(members), true) = (&self.members[child as usize], child != set) {
+            if let (Some(members), true) = (&self.members[child as usize], child != set)
+                && self.budget.take(members.len(), *at, keyword, self.report)
+            {
                 all.extend(members);
             }
         }
@@ -213,7 +229,7 @@ impl Builder<'_> {
             rows: element_rows,
             refused: &self.refused_elements,
         };
-        let members = raw_elements.resolve(&mut self.element_sets, &target, self.report);
+        let members = raw_elements.resolve(&mut self.element_sets, &target, &mut self.budget, self.report);
         self.model.mesh.element_sets = (0..)
             .zip(members)
             .map(|(position, members)| ElementSet {
@@ -245,7 +261,7 @@ impl Builder<'_> {
             rows: node_rows,
             refused: &self.refused_nodes,
         };
-        let members = raw_nodes.resolve(&mut self.node_sets, &target, self.report);
+        let members = raw_nodes.resolve(&mut self.node_sets, &target, &mut self.budget, self.report);
         self.model.mesh.node_sets = (0..)
             .zip(members)
             .map(|(position, members)| NodeSet {
@@ -266,6 +282,9 @@ impl Builder<'_> {
         let Some(set) = self.element_sets.refer(name, at, "*NSET", self.report) else { return Vec::new() };
         let mesh = &self.model.mesh;
         let elements = &mesh.element_sets[set as usize].elements;
+        if !self.budget.take(8 * elements.len(), at, "*NSET", self.report) {
+            return Vec::new();
+        }
         elements.iter().flat_map(|element| mesh.elements[element.index()].nodes).map(|node| node.0).collect()
     }
 }

@@ -58,6 +58,9 @@ impl Builder<'_> {
             }
             let (loads, load_lines, loads_removed) = self.step_loads(cards);
             self.output_requests(cards, &mut requests);
+            if !self.budget.take(requests.len(), opening.at, STEP, self.report) {
+                return;
+            }
             self.step_lines.push(boundary_lines);
             self.load_lines.push(load_lines);
             self.model.steps.push(Step {

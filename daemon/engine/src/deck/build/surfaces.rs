@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::model::{ElementFace, ElementId, Mesh, NodeId, Surface, SurfaceKind};
 
 use super::super::card::{Body, Card, Faces, Members};
+use super::super::report::At;
 use super::Builder;
 use super::layout::Layout;
 
@@ -14,7 +15,7 @@ impl Builder<'_> {
     pub(super) fn build_surfaces(&mut self, layout: &Layout<'_>) {
         for card in layout.all.iter().filter(|card| card.keyword.name == SURFACE) {
             let Some(name) = card.parameters.value("NAME") else { continue };
-            let (position, is_new) = self.surfaces.enter(name);
+            let (position, is_new) = self.surfaces.enter(name, card.at);
             if !is_new {
                 let message = format!("surface {name} is defined twice");
                 self.report.error(card.at, SURFACE, message, "write all its faces under one *SURFACE, or rename one");
@@ -23,7 +24,7 @@ impl Builder<'_> {
             let mut sound = !card.faulty;
             let kind = match &card.body {
                 Body::Members(members) => SurfaceKind::Nodes(self.node_members(card, members, &mut sound)),
-                Body::Faces(faces) => SurfaceKind::Faces(self.face_members(faces, &mut sound)),
+                Body::Faces(faces) => SurfaceKind::Faces(self.face_members(card.at, faces, &mut sound)),
                 _ => SurfaceKind::Faces(Vec::new()),
             };
             let empty = match &kind {
@@ -56,7 +57,12 @@ impl Builder<'_> {
         }
         for (name, at) in &members.names {
             match self.node_sets.refer(name, *at, card.keyword.name, self.report) {
-                Some(set) => nodes.extend(&self.model.mesh.node_sets[set as usize].nodes),
+                Some(set) => {
+                    let members = &self.model.mesh.node_sets[set as usize].nodes;
+                    if self.budget.take(members.len(), *at, SURFACE, self.report) {
+                        nodes.extend(members);
+                    }
+                }
                 None => *sound = false,
             }
         }
@@ -65,7 +71,7 @@ impl Builder<'_> {
         nodes
     }
 
-    fn face_members(&mut self, members: &Faces, sound: &mut bool) -> Vec<ElementFace> {
+    fn face_members(&mut self, at: At, members: &Faces, sound: &mut bool) -> Vec<ElementFace> {
         let mut faces = Vec::new();
         // Elements whose free faces are wanted.
         let mut exposed: Vec<ElementId> = Vec::new();
@@ -82,12 +88,17 @@ impl Builder<'_> {
                 continue;
             };
             let elements = &self.model.mesh.element_sets[set as usize].elements;
+            if !self.budget.take(elements.len(), *at, SURFACE, self.report) {
+                break;
+            }
             match *face {
                 0 => exposed.extend(elements),
                 face => faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 })),
             }
         }
-        if !exposed.is_empty() {
+        // The search for free faces looks at every element of the mesh.
+        let searched = 6 * self.model.mesh.elements.len();
+        if !exposed.is_empty() && self.budget.take(searched, at, SURFACE, self.report) {
             faces.extend(free_faces(&self.model.mesh, &exposed));
         }
         faces.sort_unstable();
