@@ -21,14 +21,19 @@ impl Simulation {
     /// Reactions and loads add up to zero in each direction.
     fn audit_balance(&self, findings: &mut Vec<String>) {
         let prepared = &self.prepared;
+        let (coefficients, forces) = (&self.state.coefficients, &self.state.forces);
+        // Forces at work before anything cancels: what prescribed displacements and loads would do alone.
+        let mut scale: f64 = forces.iter().map(|f| f.abs()).sum();
+        for (column, a) in coefficients.iter().enumerate() {
+            scale += match prepared.condensed.is_displacement[column] {
+                true => prepared.condensed.conjugate_scale(column, coefficients, forces),
+                false => prepared.load_totals[column].iter().map(|t| (t * a).abs()).sum(),
+            };
+        }
         for d in 0..3 {
-            let reaction = self.generalised(prepared.outputs.all_reactions[d]);
-            let (mut load, mut scale) = (0.0, reaction.abs());
-            for (total, a) in prepared.load_totals.iter().zip(&self.state.coefficients) {
-                load += total[d] * a;
-                scale += (total[d] * a).abs();
-            }
-            scale += self.state.forces.iter().sum::<f64>();
+            let Some(column) = prepared.outputs.all_reactions[d] else { continue };
+            let reaction = prepared.condensed.conjugate(column, coefficients, forces);
+            let load: f64 = prepared.load_totals.iter().zip(coefficients).map(|(total, a)| total[d] * a).sum();
             if (reaction + load).abs() > BALANCE_TOLERANCE * scale {
                 findings.push(format!(
                     "force balance in direction {}: reactions {reaction:e} and loads {load:e} differ by {:e}",

@@ -240,6 +240,21 @@ fn a_replaced_magnitude_keeps_the_ramp() {
     assert!((output(&s, "contact.S_P.CFN3") - 20.0).abs() < 1e-9);
 }
 
+/// Pressed and lifted off again: what is left of the reactions is rounding, and no finding.
+#[test]
+fn an_open_unloaded_column_passes_the_audit() {
+    let mut model = column(exponential(), 0.08);
+    let mut lift = model.steps[0].clone();
+    lift.boundaries[0].magnitude = 0.05;
+    model.steps.push(lift);
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
+    let mut s = Simulation::new(Arc::new(prepared));
+    assert_eq!(s.advance(2.0, &mut ()), Ok(AdvanceOutcome::Reached));
+    assert!(s.contact_results().iter().all(|p| p.status == ContactStatus::Open && p.pressure == 0.0));
+    assert_eq!(s.audit(), Vec::<String>::new());
+    assert_eq!(s.step_reports().len(), 2);
+}
+
 #[test]
 fn nonsense_from_outside_is_refused() {
     let mut s = simulation(NormalBehavior::Hard, 0.08);

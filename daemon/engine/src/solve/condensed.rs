@@ -105,6 +105,15 @@ impl Condensed {
         if self.is_displacement[column] { by_columns + by_contact } else { by_columns - by_contact }
     }
 
+    /// Sum of the absolute terms of [`Self::conjugate`]: the scale of its rounding.
+    pub fn conjugate_scale(&self, column: usize, coefficients: &[f64], forces: &[f64]) -> f64 {
+        let m = self.coupling.rows;
+        let by_columns: f64 =
+            coefficients.iter().enumerate().map(|(j, a)| (self.coupling.values[j * m + column] * a).abs()).sum();
+        let by_contact: f64 = self.gap_columns.column(column).iter().zip(forces).map(|(h, f)| (h * f).abs()).sum();
+        by_columns + by_contact
+    }
+
     /// Strain energy of the bodies: `½ Σ_dd a G a + ½ Σ_ff a G a + ½ Fᵀ W F − Fᵀ Σ_f H a`.
     pub fn strain_energy(&self, compliance: &Dense, coefficients: &[f64], forces: &[f64], scratch: &mut [f64]) -> f64 {
         let m = self.coupling.rows;
