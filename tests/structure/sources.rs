@@ -132,7 +132,9 @@ fn one_file_names_the_linear_algebra_and_one_the_ordering_library() {
     let everywhere = ["daemon", "fmu", "protocol", "clients/rust"];
     let found: Vec<String> = everywhere
         .iter()
-        .flat_map(|folder| [offenders(folder, linear, &["faer"]), offenders(folder, ordering, &["feral_scotch"])].concat())
+        .flat_map(|folder| {
+            [offenders(folder, linear, &["faer"]), offenders(folder, ordering, &["feral_scotch"])].concat()
+        })
         .collect();
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
