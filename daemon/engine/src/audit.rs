@@ -26,7 +26,7 @@ impl Simulation {
         let mut scale: f64 = forces.iter().map(|f| f.abs()).sum();
         for (column, a) in coefficients.iter().enumerate() {
             scale += match prepared.condensed.is_displacement[column] {
-                true => prepared.condensed.conjugate_scale(column, coefficients, forces),
+                true => prepared.condensed.unrelieved[column] * a.abs(),
                 false => prepared.load_totals[column].iter().map(|t| (t * a).abs()).sum(),
             };
         }

@@ -36,6 +36,8 @@ pub struct Condensed {
     pub coupling: Dense,
     /// Which columns are displacements.
     pub is_displacement: Vec<bool>,
+    /// `û_iᵀ K û_i` of displacement columns before the interior gives way: the scale of the rounding in `G`.
+    pub unrelieved: Vec<f64>,
 }
 
 impl Condensed {
@@ -76,7 +78,11 @@ impl Condensed {
         let is_displacement: Vec<bool> = columns.iter().map(Column::is_displacement).collect();
         let coupling = couplings(columns, &products, &prescribed_energy);
         let initial = points.iter().map(|p| -p.clearance).collect();
-        (Self { slip_compliance, initial, gap_columns, slip_columns, coupling, is_displacement }, compliance)
+        let unrelieved = (0..m).map(|i| prescribed_energy.column(i)[i]).collect();
+        (
+            Self { slip_compliance, initial, gap_columns, slip_columns, coupling, is_displacement, unrelieved },
+            compliance,
+        )
     }
 
     /// Overclosures without contact forces; coefficients of the leading columns.
@@ -103,15 +109,6 @@ impl Condensed {
             coefficients.iter().enumerate().map(|(j, a)| self.coupling.values[j * m + column] * a).sum();
         let by_contact: f64 = self.gap_columns.column(column).iter().zip(forces).map(|(h, f)| h * f).sum();
         if self.is_displacement[column] { by_columns + by_contact } else { by_columns - by_contact }
-    }
-
-    /// Sum of the absolute terms of [`Self::conjugate`]: the scale of its rounding.
-    pub fn conjugate_scale(&self, column: usize, coefficients: &[f64], forces: &[f64]) -> f64 {
-        let m = self.coupling.rows;
-        let by_columns: f64 =
-            coefficients.iter().enumerate().map(|(j, a)| (self.coupling.values[j * m + column] * a).abs()).sum();
-        let by_contact: f64 = self.gap_columns.column(column).iter().zip(forces).map(|(h, f)| (h * f).abs()).sum();
-        by_columns + by_contact
     }
 
     /// Strain energy of the bodies: `½ Σ_dd a G a + ½ Σ_ff a G a + ½ Fᵀ W F − Fᵀ Σ_f H a`.
