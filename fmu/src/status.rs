@@ -27,7 +27,7 @@ pub enum Fault {
     Failed {
         /// What the solver said.
         reason: String,
-        /// Time since the start of the experiment that was reached [time].
+        /// Time since the start of the experiment that was reached \[time\].
         elapsed: f64,
     },
 }

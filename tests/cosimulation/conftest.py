@@ -3,18 +3,11 @@
 import pytest
 
 import generate_deck
-import support
+from cosimulation.decks import pack
 from cosimulation.raw import Fmu, Instance
 
 PUNCH = 4
 INCREMENTS = 10
-
-
-def pack(*arguments):
-    """Packs, insists on success."""
-    done = support.call("pack", *arguments)
-    assert done.returncode == 0, (done.returncode, done.stderr)
-    return done
 
 
 @pytest.fixture(scope="session")

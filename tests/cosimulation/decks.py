@@ -1,4 +1,6 @@
-"""Small decks as text."""
+"""Small decks as text, and how they are packed."""
+
+import support
 
 TWO_BRICKS = """\
 *HEADING
@@ -63,3 +65,10 @@ def two_bricks(displacements=(-0.01,), period=1.0, top="TOP", material=MATERIAL)
     """A brick pressed onto another, one step per displacement."""
     steps = [STEP.format(top=top, period=period, displacement=displacement) for displacement in displacements]
     return TWO_BRICKS.format(top=top, material=material) + "".join(steps)
+
+
+def pack(*arguments):
+    """Packs, insists on success."""
+    done = support.call("pack", *arguments)
+    assert done.returncode == 0, (done.returncode, done.stderr)
+    return done

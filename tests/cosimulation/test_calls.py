@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cosimulation import decks
-from cosimulation.conftest import pack
+from cosimulation.decks import pack
 from cosimulation.raw import ERROR, OK, WARNING, Callbacks, Fmu, Instance
 
 # Which calls the standard allows, by phase: I instantiated, M initialisation mode, S step complete, T terminated.

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from cosimulation import decks, raw
-from cosimulation.conftest import pack
+from cosimulation.decks import pack
 from cosimulation.raw import OK, Fmu, Instance
 
 STEPS = 5

@@ -7,7 +7,8 @@ import fmpy
 import pytest
 
 from cosimulation import decks
-from cosimulation.conftest import INCREMENTS, pack
+from cosimulation.conftest import INCREMENTS
+from cosimulation.decks import pack
 from cosimulation.raw import ERROR, OK, Fmu
 
 

@@ -21,9 +21,9 @@ pub struct Heading {
     pub description: String,
     /// How names are built.
     pub naming: Naming,
-    /// End of the default experiment [time].
+    /// End of the default experiment \[time\].
     pub stop: f64,
-    /// Communication step of the default experiment [time].
+    /// Communication step of the default experiment \[time\].
     pub step: f64,
 }
 

@@ -19,7 +19,7 @@ pub struct Plan {
     pub outputs: Vec<u32>,
     /// Values to set after the initialisation.
     pub settings: Vec<(u32, f64)>,
-    /// Communication step [time].
+    /// Communication step \[time\].
     pub step: f64,
     /// Outputs after the settings, then after each step.
     pub expected: Vec<Vec<f64>>,

@@ -84,7 +84,7 @@ pub struct DeckBackend {
 /// What the engine's checkpoint does not hold.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct DriveState {
-    /// Total time at which the experiment starts: the beginning of the last step [time].
+    /// Total time at which the experiment starts: the beginning of the last step \[time\].
     origin: f64,
     /// Inputs set since the last step.
     pending: Vec<bool>,

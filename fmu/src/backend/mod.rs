@@ -23,7 +23,7 @@ pub trait Backend: Send {
     /// Brings outputs up to date with inputs and parameters at the present time. When it is refused, no value has changed.
     fn refresh(&mut self, values: &mut Values) -> Result<(), Fault>;
 
-    /// Advances to `elapsed` [time] after the start of the experiment and refreshes the outputs.
+    /// Advances to `elapsed` \[time\] after the start of the experiment and refreshes the outputs.
     fn step(&mut self, elapsed: f64, values: &mut Values) -> Result<(), Fault>;
 
     /// Back to the state after instantiation.
