@@ -684,6 +684,9 @@ fn decks_that_blow_up_are_refused_in_bounded_time() {
 #[test]
 fn what_is_not_a_deck_is_refused() {
     refuses("", "", "the deck is empty");
+    for text in ["", "*NODE\n1, 0.\0\n"] {
+        assert_eq!(read(text).diagnostics.len(), 1, "{}", listing(&read(text).diagnostics));
+    }
     refuses("** nothing but comments\n", "", "the deck is empty");
     refuses("Dear reader,\n", "", "text before the first keyword");
     refuses("*NODE\n1, 0.\0\n", "", "it is binary");

@@ -26,6 +26,8 @@ pub struct Deck {
     pub refused_elements: FxHashSet<u32>,
     /// Something that may have defined nodes, elements or names was not read, so what seems to be missing may not be.
     pub incomplete: bool,
+    /// Reading stopped before the end of the input: what follows is unknown.
+    pub stopped: bool,
 }
 
 /// Nodes as written.

@@ -20,15 +20,10 @@ const NODES_PER_ELEMENT: usize = 8;
 
 /// Reads every line of the deck.
 pub fn collect(source: &mut Source<'_>, report: &mut Report) -> io::Result<Deck> {
-    let mut collector = Collector {
-        report,
-        deck: Deck::default(),
-        sink: Sink::BeforeFirst,
-        row: ElementRow::default(),
-        stopped: false,
-    };
+    let mut collector =
+        Collector { report, deck: Deck::default(), sink: Sink::BeforeFirst, row: ElementRow::default() };
     let mut buffer = Vec::with_capacity(256);
-    while !collector.stopped {
+    while !collector.deck.stopped {
         let at = match source.next_line(&mut buffer)? {
             Line::Text(at) => at,
             Line::TooLong(at) => {
@@ -131,8 +126,6 @@ struct Collector<'r> {
     deck: Deck,
     sink: Sink,
     row: ElementRow,
-    /// What is left of the input is not worth reading.
-    stopped: bool,
 }
 
 impl Collector<'_> {
@@ -144,7 +137,7 @@ impl Collector<'_> {
             "give a text file in Abaqus format",
         );
         self.deck.incomplete = true;
-        self.stopped = true;
+        self.deck.stopped = true;
     }
 
     /// Returns the file to go on with when the line is `*INCLUDE`.
@@ -416,7 +409,7 @@ impl Collector<'_> {
     fn include_fault(&mut self, input: &str, at: At, fault: IncludeFault) {
         // What the file would have defined is unknown: complaints about missing names would mislead.
         self.deck.incomplete |= !matches!(fault, IncludeFault::Cycle);
-        self.stopped |= matches!(fault, IncludeFault::TooMany);
+        self.deck.stopped |= matches!(fault, IncludeFault::TooMany);
         let input = excerpt(input.as_bytes());
         let (message, remedy) = match fault {
             IncludeFault::NoFolder => (

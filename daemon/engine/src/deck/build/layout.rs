@@ -25,8 +25,8 @@ pub struct StepCards<'d> {
 
 const STEP: &str = "*STEP";
 
-/// Sorts the cards of a deck, reports those out of place.
-pub fn arrange<'d>(cards: &'d [Card], report: &mut Report) -> Layout<'d> {
+/// Sorts the cards of a deck, reports those out of place. `stopped`: the rest of the deck was not read.
+pub fn arrange<'d>(cards: &'d [Card], stopped: bool, report: &mut Report) -> Layout<'d> {
     let mut layout = Layout { all: cards, ..Layout::default() };
     let mut open = false;
     for card in cards {
@@ -50,11 +50,11 @@ pub fn arrange<'d>(cards: &'d [Card], report: &mut Report) -> Layout<'d> {
             _ => layout.place(card, open, report),
         }
     }
-    if let Some(step) = layout.steps.last().filter(|_| open) {
+    if let Some(step) = layout.steps.last().filter(|_| open && !stopped) {
         let message = "the step is not closed: the deck may have been cut off";
         report.error(step.opening.at, STEP, message, "write *END STEP behind the step");
     }
-    if layout.steps.is_empty() {
+    if layout.steps.is_empty() && !stopped {
         let (message, remedy) = if cards.is_empty() {
             ("the deck is empty", "give a deck with nodes, elements and a step")
         } else {

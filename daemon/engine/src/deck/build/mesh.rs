@@ -54,7 +54,7 @@ pub fn build_mesh(deck: &mut Deck, dialect: Dialect, report: &mut Report) -> Mes
     let elements = Labels::of(&mesh.element_labels);
     mesh.node_of_label = map_labels(&mesh.node_labels, NodeId);
     mesh.element_of_label = map_labels(&mesh.element_labels, ElementId);
-    if !deck.incomplete {
+    if !deck.incomplete && !deck.cards.is_empty() {
         if mesh.nodes.is_empty() && deck.refused_nodes.is_empty() {
             report.error(At::DECK, NODE, "the deck has no nodes", "add *NODE with the nodes of the mesh");
         }

@@ -55,8 +55,8 @@ struct Builder<'r> {
 /// Builds the model. It is to be used only when the report has no errors.
 pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Report) -> Model {
     let parts = mesh::build_mesh(&mut deck, dialect, report);
-    let Deck { heading, cards, refused_nodes, refused_elements, incomplete, .. } = deck;
-    let layout = layout::arrange(&cards, report);
+    let Deck { heading, cards, refused_nodes, refused_elements, incomplete, stopped, .. } = deck;
+    let layout = layout::arrange(&cards, stopped, report);
     let entities = parts.mesh.nodes.len() + parts.mesh.elements.len();
     let mut builder = Builder {
         model: Model { heading, dialect, mesh: parts.mesh, ..Model::default() },
@@ -135,7 +135,9 @@ impl Builder<'_> {
             .filter(|(used, _)| !**used)
             .map(|(_, label)| *label)
             .collect();
-        if let (Some(first), true) = (loose.first(), self.refused_elements.is_empty()) {
+        if let (Some(first), true) =
+            (loose.first(), self.refused_elements.is_empty() && !self.model.mesh.elements.is_empty())
+        {
             let message = format!("{} nodes belong to no element, the first is node {first}", loose.len());
             self.report.warning(
                 At::DECK,
