@@ -7,17 +7,22 @@ impl Simulation {
     /// Computes overclosures and results from the state alone, as after a restore.
     pub(crate) fn recompute(&mut self) {
         let prepared = self.prepared.clone();
-        prepared.condensed.free_overclosures(&self.state.coefficients, &mut self.work.free);
-        prepared.contact.overclosures(&self.work.free, &self.state.forces, &mut self.work.overclosures);
+        let work = &mut self.work;
+        prepared.condensed.free_overclosures(&self.state.coefficients, &mut work.free);
+        prepared.contact.relief(&self.state.forces, &mut work.relief);
+        for ((h, free), relief) in work.overclosures.iter_mut().zip(&work.free).zip(&work.relief) {
+            *h = free - relief;
+        }
         self.refresh();
     }
 
-    /// Brings the derived results up to the state; the work space holds the state's overclosures.
+    /// Brings the derived results up to the state; the work space holds its overclosures and their relief.
     pub(crate) fn refresh(&mut self) {
         let prepared = self.prepared.clone();
         let n = prepared.points.len();
         let (state, derived) = (&self.state, &mut self.derived);
         derived.overclosures.clone_from(&self.work.overclosures);
+        derived.relief.clone_from(&self.work.relief);
         derived.points.clear();
         derived.pairs.clear();
         derived.pairs.resize(prepared.model.pairs.len(), PairTotals::default());
@@ -43,9 +48,7 @@ impl Simulation {
         for pair in &mut derived.pairs {
             pair.force_magnitude = pair.force.iter().map(|f| f * f).sum::<f64>().sqrt();
         }
-        let scratch = &mut self.work.scratch[..n];
-        let strain =
-            prepared.condensed.strain_energy(&prepared.contact.compliance, &state.coefficients, &state.forces, scratch);
+        let strain = prepared.condensed.strain_energy(&state.coefficients, &state.forces, &derived.relief);
         let contact = prepared.contact.energy(&derived.overclosures);
         derived.energies = Energies {
             strain,

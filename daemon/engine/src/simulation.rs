@@ -48,6 +48,7 @@ pub(crate) struct Work {
     pub forces: Vec<f64>,
     pub closed: Vec<bool>,
     pub overclosures: Vec<f64>,
+    pub relief: Vec<f64>,
     pub tangential: Vec<f64>,
     pub scratch: Vec<f64>,
 }
@@ -56,6 +57,8 @@ pub(crate) struct Work {
 #[derive(Default)]
 pub(crate) struct Derived {
     pub overclosures: Vec<f64>,
+    /// `W F`.
+    pub relief: Vec<f64>,
     pub points: Vec<ContactPointResult>,
     pub pairs: Vec<PairTotals>,
     pub energies: Energies,
@@ -107,10 +110,11 @@ impl Simulation {
             forces: vec![0.0; n],
             closed: vec![false; n],
             overclosures: vec![0.0; n],
+            relief: vec![0.0; n],
             tangential: vec![0.0; 2 * n],
             scratch: vec![0.0; 2 * n],
         };
-        let derived = Derived { overclosures: vec![0.0; n], ..Derived::default() };
+        let derived = Derived { overclosures: vec![0.0; n], relief: vec![0.0; n], ..Derived::default() };
         let solver = ContactSolver::new(&prepared.contact);
         let mut simulation = Self { prepared, state, solver, work, derived, input_of_column, step_starts };
         simulation.recompute();
@@ -183,6 +187,15 @@ impl Simulation {
     /// Advances to a total time, through `initialize` if needed. Increments follow the deck's control and end
     /// on the target to rounding; a target equal to the present time applies pending inputs and refreshes outputs.
     pub fn advance(&mut self, target: f64, watch: &mut dyn Watch) -> Result<AdvanceOutcome, AdvanceError> {
+        self.check_target(target)?;
+        match self.initialize(watch) {
+            AdvanceOutcome::Reached => Ok(self.advance_step(target - self.time_start(), watch)),
+            other => Ok(other),
+        }
+    }
+
+    /// Whether [`Self::advance`] would take a target time: finite, and not before the present time by more than rounding.
+    pub fn check_target(&self, target: f64) -> Result<(), AdvanceError> {
         if !target.is_finite() {
             return Err(AdvanceError::NotFinite { target });
         }
@@ -190,10 +203,7 @@ impl Simulation {
         if target < now - 1e-12 * now.abs().max(self.time_end()) {
             return Err(AdvanceError::Past { now, target });
         }
-        match self.initialize(watch) {
-            AdvanceOutcome::Reached => Ok(self.advance_step(target - self.time_start(), watch)),
-            other => Ok(other),
-        }
+        Ok(())
     }
 
     /// Results at the contact points, in the order of [`PreparedModel::contact_points`].

@@ -141,10 +141,12 @@ impl Simulation {
         prepared.condensed.free_overclosures(&coefficients, &mut work.free);
         work.forces.clone_from(&self.state.forces);
         work.closed.clone_from(&self.state.closed);
+        work.relief.clone_from(&self.derived.relief);
         let solved = self.solver.solve(
             &prepared.contact,
             &work.free,
             &mut work.forces,
+            &mut work.relief,
             &mut work.closed,
             &mut work.overclosures,
         );

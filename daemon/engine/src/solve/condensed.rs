@@ -111,8 +111,8 @@ impl Condensed {
         if self.is_displacement[column] { by_columns + by_contact } else { by_columns - by_contact }
     }
 
-    /// Strain energy of the bodies: `½ Σ_dd a G a + ½ Σ_ff a G a + ½ Fᵀ W F − Fᵀ Σ_f H a`.
-    pub fn strain_energy(&self, compliance: &Dense, coefficients: &[f64], forces: &[f64], scratch: &mut [f64]) -> f64 {
+    /// Strain energy of the bodies: `½ Σ_dd a G a + ½ Σ_ff a G a + ½ Fᵀ W F − Fᵀ Σ_f H a`; `relief` is `W F`.
+    pub fn strain_energy(&self, coefficients: &[f64], forces: &[f64], relief: &[f64]) -> f64 {
         let m = self.coupling.rows;
         let mut energy = 0.0;
         for (j, aj) in coefficients.iter().enumerate() {
@@ -122,9 +122,7 @@ impl Condensed {
                 }
             }
         }
-        scratch.fill(0.0);
-        compliance.multiply_add(forces, scratch);
-        energy += 0.5 * scratch.iter().zip(forces).map(|(w, f)| w * f).sum::<f64>();
+        energy += 0.5 * relief.iter().zip(forces).map(|(w, f)| w * f).sum::<f64>();
         for (j, aj) in coefficients.iter().enumerate().filter(|&(j, _)| !self.is_displacement[j]) {
             energy -= aj * self.gap_columns.column(j).iter().zip(forces).map(|(h, f)| h * f).sum::<f64>();
         }

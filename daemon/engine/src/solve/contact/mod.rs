@@ -52,14 +52,11 @@ pub struct ContactSystem {
 }
 
 impl ContactSystem {
-    /// Overclosures under given contact forces. The one place where they are computed, so that a restored state
-    /// has the same bits.
-    pub fn overclosures(&self, free: &[f64], forces: &[f64], out: &mut [f64]) {
+    /// `W F`: by how much contact forces take the overclosures back. The one place where it is computed, so that a
+    /// restored state has the same bits.
+    pub fn relief(&self, forces: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.compliance.multiply_add(forces, out);
-        for (o, f) in out.iter_mut().zip(free) {
-            *o = f - *o;
-        }
     }
 
     /// Energy stored in softened contact.
@@ -105,7 +102,6 @@ pub enum SolveFailure {
 #[derive(Default)]
 pub struct ContactSolver {
     trial: Vec<f64>,
-    relief: Vec<f64>,
     relief_trial: Vec<f64>,
     active: Vec<u32>,
     /// Per point: compliance of the linearised law (0 for hard points).
@@ -128,9 +124,7 @@ impl ContactSolver {
     pub fn new(system: &ContactSystem) -> Self {
         let n = system.points.len();
         let mut solver = Self::default();
-        for v in
-            [&mut solver.trial, &mut solver.relief, &mut solver.relief_trial, &mut solver.compliance, &mut solver.onset]
-        {
+        for v in [&mut solver.trial, &mut solver.relief_trial, &mut solver.compliance, &mut solver.onset] {
             v.resize(n, 0.0);
         }
         for v in [&mut solver.active, &mut solver.violating, &mut solver.factor_points, &mut solver.factor_rows] {
@@ -143,13 +137,14 @@ impl ContactSolver {
         solver
     }
 
-    /// Solves for the contact forces. `forces` and `closed` hold the start and receive the solution;
-    /// `overclosures` receives the final overclosures. On failure they are left as they are at that moment.
+    /// Solves for the contact forces. `forces`, their `relief` `W F` and `closed` hold the start and receive the solution;
+    /// `overclosures` receives `free − relief`. On failure they are left as they are at that moment.
     pub fn solve(
         &mut self,
         system: &ContactSystem,
         free: &[f64],
         forces: &mut [f64],
+        relief: &mut [f64],
         closed: &mut [bool],
         overclosures: &mut [f64],
     ) -> Result<SolveCounts, SolveFailure> {
@@ -162,26 +157,24 @@ impl ContactSolver {
         }
         // A start that violates a hard constraint has no potential to compare with: its first step is taken whole.
         let mut comparable = !has_hard;
-        self.relief.fill(0.0);
-        system.compliance.multiply_add(forces, &mut self.relief);
         for i in 0..n {
-            overclosures[i] = free[i] - self.relief[i];
+            overclosures[i] = free[i] - relief[i];
         }
         for _ in 0..ITERATIONS_MAX {
             self.was_closed.copy_from_slice(closed);
             self.linearise(system, overclosures);
             counts.severe_discontinuity_iterations += self.minimise_model(system, free, free_scale)?;
-            let fraction = if comparable { self.line_search(system, forces, overclosures) } else { 1.0 };
+            let fraction = if comparable { self.line_search(system, forces, relief, overclosures) } else { 1.0 };
             comparable = true;
             for i in 0..n {
                 if fraction == 1.0 {
                     forces[i] = self.trial[i];
-                    self.relief[i] = self.relief_trial[i];
+                    relief[i] = self.relief_trial[i];
                 } else {
                     forces[i] += fraction * (self.trial[i] - forces[i]);
-                    self.relief[i] += fraction * (self.relief_trial[i] - self.relief[i]);
+                    relief[i] += fraction * (self.relief_trial[i] - relief[i]);
                 }
-                overclosures[i] = free[i] - self.relief[i];
+                overclosures[i] = free[i] - relief[i];
             }
             for i in 0..n {
                 closed[i] = if system.is_hard(i) { self.is_active[i] } else { forces[i] > 0.0 };
@@ -192,7 +185,7 @@ impl ContactSolver {
                 counts.equilibrium_iterations += 1;
             }
             if fraction == 1.0 && self.is_balanced(system, free, forces, overclosures) {
-                system.overclosures(free, forces, overclosures);
+                // The last step was taken whole: `relief` is `W F` as `relief` of the system computes it.
                 return Ok(counts);
             }
         }
@@ -231,8 +224,7 @@ impl ContactSolver {
             self.active.clear();
             self.active.extend((0..n as u32).filter(|&i| self.is_active[i as usize]));
             self.solve_active(system, free);
-            self.relief_trial.fill(0.0);
-            system.compliance.multiply_add(&self.trial, &mut self.relief_trial);
+            system.relief(&self.trial, &mut self.relief_trial);
             let force_scale = self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()));
             let slack = OVERCLOSURE_TOLERANCE * free_scale;
             self.violating.clear();
@@ -365,13 +357,13 @@ impl ContactSolver {
     }
 
     /// Part of the step to take: 1 unless Π has risen again before its end, else a point near its minimum.
-    fn line_search(&self, system: &ContactSystem, forces: &[f64], overclosures: &[f64]) -> f64 {
+    fn line_search(&self, system: &ContactSystem, forces: &[f64], relief: &[f64], overclosures: &[f64]) -> f64 {
         let n = system.points.len();
         // Π'(t) = (Λ + t dΛ)ᵀ W dΛ − Σ A p(h − t W dΛ) (W dΛ).
         let slope = |t: f64| -> f64 {
             let mut sum = 0.0;
             for i in 0..n {
-                let rate = self.relief_trial[i] - self.relief[i];
+                let rate = self.relief_trial[i] - relief[i];
                 let force = forces[i] + t * (self.trial[i] - forces[i]);
                 sum += force * rate;
                 let point = &system.points[i];

@@ -26,7 +26,8 @@ fn compliance(numbers: &mut Numbers, n: usize, rank: usize) -> Dense {
 }
 
 fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize) -> usize) -> ContactSystem {
-    let points = (0..compliance.rows).map(|i| PointBehavior { area: 0.5 + 0.1 * i as f64, behavior: pick(i) }).collect();
+    let points =
+        (0..compliance.rows).map(|i| PointBehavior { area: 0.5 + 0.1 * i as f64, behavior: pick(i) }).collect();
     ContactSystem { compliance, points, behaviors }
 }
 
@@ -45,8 +46,15 @@ fn softened() -> Vec<NormalBehavior> {
 
 fn solve(system: &ContactSystem, free: &[f64]) -> (Vec<f64>, Vec<f64>, Result<SolveCounts, SolveFailure>) {
     let n = free.len();
-    let (mut forces, mut closed, mut overclosures) = (vec![0.0; n], vec![false; n], vec![0.0; n]);
-    let result = ContactSolver::new(system).solve(system, free, &mut forces, &mut closed, &mut overclosures);
+    let (mut forces, mut relief, mut closed, mut overclosures) =
+        (vec![0.0; n], vec![0.0; n], vec![false; n], vec![0.0; n]);
+    let result =
+        ContactSolver::new(system).solve(system, free, &mut forces, &mut relief, &mut closed, &mut overclosures);
+    if result.is_ok() {
+        let mut recomputed = vec![0.0; n];
+        system.relief(&forces, &mut recomputed);
+        assert_eq!(relief, recomputed, "a restored state has the same bits");
+    }
     (forces, overclosures, result)
 }
 
@@ -56,10 +64,8 @@ fn enumerate(w: &Dense, free: &[f64]) -> Vec<f64> {
     for set in 0..1u32 << n {
         let active: Vec<usize> = (0..n).filter(|i| set >> i & 1 == 1).collect();
         let m = active.len();
-        let mut a: Vec<Vec<f64>> = active
-            .iter()
-            .map(|&i| active.iter().map(|&j| w.values[j * n + i]).chain([free[i]]).collect())
-            .collect();
+        let mut a: Vec<Vec<f64>> =
+            active.iter().map(|&i| active.iter().map(|&j| w.values[j * n + i]).chain([free[i]]).collect()).collect();
         for k in 0..m {
             let pivot = a[k].clone();
             for (r, row) in a.iter_mut().enumerate() {
@@ -114,7 +120,10 @@ fn every_law_and_mixture_converges_and_satisfies_its_law() {
         let problem = system(w, behaviors.clone(), pick);
         let (forces, overclosures, result) = solve(&problem, &free);
         let counts = result.unwrap_or_else(|e| panic!("case {case}: {e:?}"));
-        assert!(counts.equilibrium_iterations + counts.severe_discontinuity_iterations < 120, "case {case}: {counts:?}");
+        assert!(
+            counts.equilibrium_iterations + counts.severe_discontinuity_iterations < 120,
+            "case {case}: {counts:?}"
+        );
         let scale = forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
         for i in 0..n {
             // Rounding of the sum W F, which cancels when W is ill-conditioned.
@@ -148,7 +157,10 @@ fn dependent_hard_points_are_satisfied_and_contradictions_named() {
     let problem = system(w, vec![NormalBehavior::Hard], |_| 0);
     let (forces, overclosures, result) = solve(&problem, &free);
     result.expect("consistent");
-    assert!(overclosures.iter().all(|h| *h < 1e-9) && forces.iter().all(|f| *f >= -1e-9), "{forces:?} {overclosures:?}");
+    assert!(
+        overclosures.iter().all(|h| *h < 1e-9) && forces.iter().all(|f| *f >= -1e-9),
+        "{forces:?} {overclosures:?}"
+    );
     // No compliance at all: nothing can give way.
     let rigid = system(Dense::zeros(2, 2), vec![NormalBehavior::Hard], |_| 0);
     let (.., refused) = solve(&rigid, &[-0.1, 0.2]);
@@ -160,11 +172,13 @@ fn a_second_solve_from_the_solution_needs_one_iteration_and_no_new_factor() {
     let mut numbers = Numbers(5);
     let problem = system(compliance(&mut numbers, 8, 10), softened(), |_| 0);
     let free: Vec<f64> = (0..8).map(|_| numbers.next()).collect();
-    let (mut forces, mut closed, mut overclosures) = (vec![0.0; 8], vec![false; 8], vec![0.0; 8]);
+    let (mut forces, mut relief, mut closed, mut overclosures) =
+        (vec![0.0; 8], vec![0.0; 8], vec![false; 8], vec![0.0; 8]);
     let mut solver = ContactSolver::new(&problem);
-    solver.solve(&problem, &free, &mut forces, &mut closed, &mut overclosures).expect("solvable");
+    solver.solve(&problem, &free, &mut forces, &mut relief, &mut closed, &mut overclosures).expect("solvable");
     let factor = solver.factor.clone();
-    let counts = solver.solve(&problem, &free, &mut forces, &mut closed, &mut overclosures).expect("solvable");
+    let counts =
+        solver.solve(&problem, &free, &mut forces, &mut relief, &mut closed, &mut overclosures).expect("solvable");
     assert_eq!(counts, SolveCounts { equilibrium_iterations: 1, severe_discontinuity_iterations: 0 });
     assert_eq!(factor, solver.factor);
 }
