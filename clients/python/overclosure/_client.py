@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import uuid
+import weakref
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -74,6 +75,8 @@ class Client:
         self._quick = quick
         self._work = work
         self._zenoh = open_session(endpoint, timeout_connect)
+        # Also when the program ends without closing: the transport must not outlive the interpreter.
+        self._finalizer = weakref.finalize(self, self._zenoh.close)
         try:
             self._info = call(self._zenoh, f"overclosure/v1/{daemon or '*'}/info", Info, "", None, quick)
         except BaseException:
@@ -187,7 +190,7 @@ class Client:
 
     def close(self) -> None:
         """Close the connection; sessions stay open in the daemon."""
-        self._zenoh.close()  # type: ignore[no-untyped-call]
+        self._finalizer()
 
     def _ask(self, verb: str, reply: type[T]) -> T:
         return call(self._zenoh, f"overclosure/v1/{self.daemon}/{verb}", reply, "", None, self._quick)

@@ -299,6 +299,7 @@ class Frames:
     def __init__(self, session: Session, field: str, timeout: float | None) -> None:
         """Subscribe; use :meth:`Session.frames`."""
         self._timeout = timeout
+        self._session = session
         self._waiting: queue.Queue[zenoh.Sample | None] = queue.Queue(FRAMES_WAITING)
         zenoh_session = session._client._zenoh
         # Not through a thread of Python's: a program that forgets to close must still be able to end.

@@ -2,6 +2,7 @@
 //! one for short answers and refusals, one for laws.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
 use overclosure::law::{LawPoint, LawSpec};
@@ -35,6 +36,8 @@ enum Short {
 pub struct Desk {
     short: SyncSender<Short>,
     law: SyncSender<Call>,
+    /// Queries that got no answer, since the start.
+    dropped: AtomicU64,
 }
 
 impl Desk {
@@ -42,7 +45,7 @@ impl Desk {
     pub fn new() -> (Self, DeskThreads) {
         let (short, short_receiver) = sync_channel(WAITING);
         let (law, law_receiver) = sync_channel(WAITING);
-        (Self { short, law }, DeskThreads { short: short_receiver, law: law_receiver })
+        (Self { short, law, dropped: AtomicU64::new(0) }, DeskThreads { short: short_receiver, law: law_receiver })
     }
 
     /// Hands over a verb of the daemon other than `open`. Never blocks.
@@ -75,7 +78,11 @@ impl Desk {
     fn give(&self, short: Short) {
         // When even refusals pile up, dropping the query tells the client "zero replies", upon which it tries again.
         if let Err(TrySendError::Full(_)) = self.short.try_send(short) {
-            tracing::warn!("overloaded: a query was dropped without an answer");
+            let dropped = self.dropped.fetch_add(1, Ordering::Relaxed) + 1;
+            // At 1, 2, 4, 8, ...: a flood of queries must not become a flood of lines.
+            if dropped.is_power_of_two() {
+                tracing::warn!(dropped, "overloaded: queries were dropped without an answer");
+            }
         }
     }
 }
@@ -148,7 +155,7 @@ fn health(shared: &Shared) -> Health {
     Health {
         status: if shared.registry.draining() { HealthStatus::Draining } else { HealthStatus::Ready },
         uptime_seconds: shared.started.elapsed().as_secs_f64(),
-        sessions_failed: shared.sessions_failed.load(std::sync::atomic::Ordering::Relaxed),
+        sessions_failed: shared.sessions_failed.load(Ordering::Relaxed),
         frames_dropped: shared.frames.dropped(),
     }
 }
@@ -156,8 +163,8 @@ fn health(shared: &Shared) -> Health {
 fn load(shared: &Shared) -> Load {
     Load {
         sessions_free: shared.registry.free(),
-        steps: shared.steps.load(std::sync::atomic::Ordering::Relaxed),
-        increments: shared.increments.load(std::sync::atomic::Ordering::Relaxed),
+        steps: shared.steps.load(Ordering::Relaxed),
+        increments: shared.increments.load(Ordering::Relaxed),
         models: u32::try_from(shared.models.count()).unwrap_or(u32::MAX),
         sessions: shared.registry.summaries(),
     }

@@ -40,7 +40,7 @@ fn route(shared: &Arc<Shared>, query: Query) {
     };
     let call = match Call::accept(query, key) {
         Ok(call) => call,
-        Err(refusal) => return shared.desk.refuse(refusal),
+        Err(refusal) => return shared.desk.refuse(*refusal),
     };
     if let Err(fault) = call.check_size(shared.config.limits.message_bytes) {
         return shared.desk.fail(call, fault);
@@ -50,8 +50,8 @@ fn route(shared: &Arc<Shared>, query: Query) {
         Target::Daemon(DaemonVerb::Open) => open(shared, call),
         Target::Daemon(verb) => shared.desk.verb(verb, call),
         Target::Session { session, verb } => {
-            if let Err((fault, command)) = shared.registry.dispatch(&session, Command::Verb(verb, call)) {
-                shared.desk.fail(command.into_call(), fault);
+            if let Err(refused) = shared.registry.dispatch(&session, Command::Verb(verb, call)) {
+                shared.desk.fail(refused.command.into_call(), refused.fault);
             }
         }
     }

@@ -29,6 +29,14 @@ impl Command {
     }
 }
 
+/// A request given back, with the reason.
+pub struct Refused {
+    /// The reason.
+    pub fault: Fault,
+    /// The request.
+    pub command: Command,
+}
+
 /// What others may know about a session without asking its thread.
 #[derive(Default)]
 pub struct Status {
@@ -114,7 +122,7 @@ impl Registry {
             return match entry.queue.try_send(Command::OpenedAgain(query)) {
                 Ok(()) => Ok(Opening::Forwarded),
                 Err(error) => {
-                    let (fault, command) = refused(error, self.queue);
+                    let Refused { fault, command } = refused(error, self.queue);
                     *call = Some(command.into_call());
                     Err(fault)
                 }
@@ -139,16 +147,16 @@ impl Registry {
     }
 
     /// Puts a request into the queue of its session, or gives it back with the reason. Never blocks.
-    pub fn dispatch(&self, session: &str, command: Command) -> Result<(), (Fault, Command)> {
+    pub fn dispatch(&self, session: &str, command: Command) -> Result<(), Box<Refused>> {
         let sessions = self.lock();
         if sessions.draining {
-            return Err((shutting_down(), command));
+            return Err(Box::new(Refused { fault: shutting_down(), command }));
         }
         let number =
             session.strip_prefix(&self.prefix).and_then(|rest| rest.strip_prefix('-')).and_then(|n| n.parse().ok());
         match number.and_then(|n: u64| sessions.open.get(&n)) {
-            Some(entry) => entry.queue.try_send(command).map_err(|error| refused(error, self.queue)),
-            None => Err((unknown_session(session), command)),
+            Some(entry) => entry.queue.try_send(command).map_err(|error| Box::new(refused(error, self.queue))),
+            None => Err(Box::new(Refused { fault: unknown_session(session), command })),
         }
     }
 
@@ -211,15 +219,17 @@ pub fn shutting_down() -> Fault {
     Fault::new(FaultCode::ShuttingDown, "the daemon is shutting down")
 }
 
-fn refused(error: TrySendError<Command>, queue: u32) -> (Fault, Command) {
+fn refused(error: TrySendError<Command>, queue: u32) -> Refused {
     match error {
         TrySendError::Full(command) => {
             let mut fault =
                 Fault::new(FaultCode::Busy, format!("{queue} requests are waiting for this session; try again later"));
             fault.details.limit = Some(queue.into());
-            (fault, command)
+            Refused { fault, command }
         }
-        TrySendError::Closed(command) => (Fault::new(FaultCode::UnknownSession, "the session has just ended"), command),
+        TrySendError::Closed(command) => {
+            Refused { fault: Fault::new(FaultCode::UnknownSession, "the session has just ended"), command }
+        }
     }
 }
 

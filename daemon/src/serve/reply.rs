@@ -17,11 +17,11 @@ pub struct Call {
 
 impl Call {
     /// Takes a query whose encoding is understood; otherwise answers it with the fault.
-    pub fn accept(query: Query, key: String) -> Result<Self, Refusal> {
+    pub fn accept(query: Query, key: String) -> Result<Self, Box<Refusal>> {
         let encoding = query.encoding().map(ToString::to_string);
         match codec::negotiate(encoding.as_deref()) {
             Ok(stated) => Ok(Self { query, key, stated }),
-            Err(fault) => Err(Refusal { query, fault: Box::new(fault), format: Format::Json }),
+            Err(fault) => Err(Box::new(Refusal { query, fault, format: Format::Json })),
         }
     }
 
@@ -94,7 +94,7 @@ impl Call {
 /// A query that is to be answered with a fault.
 pub struct Refusal {
     query: Query,
-    fault: Box<Fault>,
+    fault: Fault,
     format: Format,
 }
 
@@ -103,7 +103,7 @@ impl Refusal {
     pub fn new(query: Query, fault: Fault) -> Self {
         let encoding = query.encoding().map(ToString::to_string);
         let format = codec::negotiate(encoding.as_deref()).map_or(Format::Json, |stated| stated.format);
-        Self { query, fault: Box::new(fault), format }
+        Self { query, fault, format }
     }
 
     /// Answers and ends the query.

@@ -82,7 +82,9 @@ fn start(shared: &Arc<Shared>, request: &OpenRequest, registered: &Registered) -
     };
     let outcome = guarded(|| {
         let model = shared.models.obtain(request).map_err(|findings| convert::deck_refused(&findings))?;
-        Work::start(model, request, around)
+        let work = Work::start(model, request, around)?;
+        // A session that would end at once is not worth an answer that says otherwise.
+        if shared.registry.draining() { Err(shutting_down()) } else { Ok(work) }
     });
     outcome.unwrap_or_else(|fault| {
         shared.sessions_failed.fetch_add(1, Ordering::Relaxed);

@@ -48,7 +48,7 @@ fn a_session_is_opened_listed_stepped_read_watched_and_closed() {
     for time in ["0.5", "0.75"] {
         assert_eq!(run(&daemon, &["step", session, "--time", time]).code, Some(0));
     }
-    assert_eq!(lines.map(|l| l.unwrap()).count(), 2);
+    assert_eq!(lines.collect::<Result<Vec<_>, _>>().unwrap().len(), 2);
     assert!(watching.wait().unwrap().success());
 
     assert_eq!(run(&daemon, &["sessions", "--close", session]).code, Some(0));

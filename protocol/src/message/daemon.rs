@@ -64,7 +64,7 @@ message! {
         pub uptime_seconds: f64,
         /// Sessions lost to a defect of the solver since the start; each one was answered with a fault.
         pub sessions_failed: u64,
-        /// Frames not published because subscribers were too slow.
+        /// Frames dropped because increments came faster than frames can be sent.
         pub frames_dropped: u64,
     }
 }

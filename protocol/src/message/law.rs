@@ -39,10 +39,10 @@ message! {
         /// Contact pressure \[pressure\], positive pushes the bodies apart.
         #[serde(with = "crate::text::numbers")]
         pub pressure: Vec<f64>,
-        /// Slope of the pressure over the overclosure [pressure/length].
+        /// Slope of the pressure over the overclosure \[pressure/length\].
         #[serde(with = "crate::text::numbers")]
         pub stiffness: Vec<f64>,
-        /// Integral of the pressure over the overclosure [pressure*length].
+        /// Integral of the pressure over the overclosure \[pressure*length\].
         #[serde(with = "crate::text::numbers")]
         pub energy: Vec<f64>,
     }
