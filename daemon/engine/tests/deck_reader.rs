@@ -450,6 +450,12 @@ fn boundaries_are_checked() {
     }
     assert_eq!(model(&with("BOTTOM, 1, 3", "BOTTOM, 3\nBOTTOM, XSYMM\nBOTTOM, YSYMM")).initial_boundaries.len(), 5);
     assert_eq!(model(&with("TOP, 3, 3, -0.01", "15, 3, , -0.01")).steps[0].boundaries[0].region, Region::Label(15));
+    let single =
+        model(&with("BOTTOM, 1, 3\n", "4, 1, 3\n3, 1, 3\nBOTTOM, 1\n2, 1, 3\n2, 1, 3\n1, 1, 3\n")).initial_boundaries;
+    let nodes: Vec<_> = single.iter().map(|b| (b.direction, b.nodes.iter().map(|n| n.0).collect::<Vec<_>>())).collect();
+    let bottom = vec![0, 1, 2, 3];
+    let expected = [(0, &bottom), (1, &bottom), (2, &bottom), (0, &bottom)].map(|(d, nodes)| (d, nodes.clone()));
+    assert_eq!(nodes[..4], expected, "lines of single nodes are joined per direction");
     warns(&with("BOTTOM, 1, 3", "BOTTOM, 1, 6"), "*BOUNDARY", "degrees of freedom 4 to 6 are ignored");
     warns(&with("-0.01\n", "-0.01\n15, 3, 3, 0.\n"), "*BOUNDARY", "this line counts");
     let overridden = model(&with("-0.01\n", "-0.01\n15, 3, 3, 0.\n"));

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use rustc_hash::FxHashSet;
 
+use super::data::Lines;
 use super::keywords::{Effect, Found, Keyword, Parameter, ParameterValue, find, find_parameter, keywords};
-use super::lex::{self, NumberFault, fields, key, unquoted};
+use super::lex::{fields, key, unquoted};
 use super::report::{At, Report, excerpt};
 use crate::diagnostic::Severity;
 
@@ -71,7 +72,7 @@ pub enum Body {
     /// None, or none that is kept.
     Nothing,
     /// Lines, kept as text.
-    Lines(Vec<DataLine>),
+    Lines(Lines),
     /// Rows of [`Deck::nodes`].
     Nodes(Range<u32>),
     /// Rows of [`Deck::elements`].
@@ -100,83 +101,6 @@ pub struct Faces {
     pub labels: Vec<(u32, u8, At)>,
     /// Element set and face.
     pub names: Vec<(Box<str>, u8, At)>,
-}
-
-/// A data line kept as text.
-pub struct DataLine {
-    /// Where.
-    pub at: At,
-    /// The line.
-    pub text: Box<str>,
-}
-
-impl DataLine {
-    /// The line, ready to be read field by field.
-    pub fn row(&self, keyword: &'static str) -> Row<'_> {
-        let text = |field| std::str::from_utf8(field).expect("commas split UTF-8 text into UTF-8 text");
-        Row { at: self.at, keyword, fields: fields(self.text.as_bytes()).map(text).collect() }
-    }
-}
-
-/// Fields of a data line, with the place to complain about.
-pub struct Row<'a> {
-    /// Where.
-    pub at: At,
-    /// Keyword of the card.
-    pub keyword: &'static str,
-    /// Fields without the blanks around them.
-    pub fields: Vec<&'a str>,
-}
-
-impl<'a> Row<'a> {
-    /// A field; empty when it is blank or missing.
-    pub fn text(&self, index: usize) -> &'a str {
-        self.fields.get(index).copied().unwrap_or("")
-    }
-
-    /// A real, or the default for a blank; `None` when it is bad or missing, which is reported.
-    #[track_caller]
-    pub fn real(&self, index: usize, what: &str, default: Option<f64>, report: &mut Report) -> Option<f64> {
-        let text = self.text(index);
-        if text.is_empty() {
-            if default.is_none() {
-                report.error(
-                    self.at,
-                    self.keyword,
-                    format!("{what} is missing"),
-                    format!("give it as item {} of the line", index + 1),
-                );
-            }
-            return default;
-        }
-        let reject = |fault: NumberFault, report: &mut Report| {
-            let message = format!("{what}: {} {}", excerpt(text.as_bytes()), fault.text());
-            report.error(self.at, self.keyword, message, "write a number such as 1.5e3; commas stand between numbers");
-        };
-        lex::real(text.as_bytes()).map_err(|fault| reject(fault, report)).ok()
-    }
-
-    /// A whole number, or the default for a blank; `None` when it is bad or missing, which is reported.
-    #[track_caller]
-    pub fn whole(&self, index: usize, what: &str, default: Option<u32>, report: &mut Report) -> Option<u32> {
-        let value = self.real(index, what, default.map(f64::from), report)?;
-        if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
-            return Some(value as u32);
-        }
-        let message = format!("{what}: {} is not a whole number", excerpt(self.text(index).as_bytes()));
-        report.error(self.at, self.keyword, message, "write a number such as 3");
-        None
-    }
-
-    /// Complains about fields from `count` on that are not blank.
-    #[track_caller]
-    pub fn at_most(&self, count: usize, report: &mut Report) {
-        let extra = self.fields.iter().skip(count).find(|field| !field.is_empty());
-        if let Some(extra) = extra {
-            let message = format!("item {} is not read here: {}", self.fields.len(), excerpt(extra.as_bytes()));
-            report.error(self.at, self.keyword, message, format!("the line has at most {count} items"));
-        }
-    }
 }
 
 /// Parameters of a card that are read.

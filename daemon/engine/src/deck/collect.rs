@@ -2,7 +2,8 @@
 
 use std::io;
 
-use super::card::{Body, Card, DataLine, Deck, Faces, Header, Members, parse_header};
+use super::card::{Body, Card, Deck, Faces, Header, Members, parse_header};
+use super::data::Lines;
 use super::keywords::DataLines;
 use super::lex::{self, ends_with_comma, fields, key, looks_numeric};
 use super::members::FACE_REMEDY;
@@ -96,7 +97,7 @@ enum Sink {
     /// The keyword takes no data.
     Forbidden,
     Heading,
-    Lines(Vec<DataLine>),
+    Lines(Lines),
     Nodes,
     Elements,
     /// Elements of a type that is not supported: only their labels are noted.
@@ -171,7 +172,7 @@ impl Collector<'_> {
             DataLines::Forbidden => Sink::Forbidden,
             DataLines::Text if keyword.name == "*HEADING" => Sink::Heading,
             DataLines::Text | DataLines::Skipped => Sink::Skip,
-            DataLines::Fields => Sink::Lines(Vec::new()),
+            DataLines::Fields => Sink::Lines(Lines::default()),
             DataLines::Nodes => {
                 let start = self.deck.nodes.labels.len() as u32;
                 body = Body::Nodes(start..start);
@@ -230,7 +231,7 @@ impl Collector<'_> {
             Sink::Members(..) | Sink::NodeFaces(_) => self.member_line(line, at),
             Sink::Faces(_) => self.face_line(line, at),
             Sink::Lines(lines) => match std::str::from_utf8(line) {
-                Ok(text) => lines.push(DataLine { at, text: text.into() }),
+                Ok(text) => lines.push(at, text),
                 Err(_) => self.report.error(
                     at,
                     self.deck.cards.last().map_or("", |card| card.keyword.name),

@@ -7,6 +7,7 @@
 mod build;
 mod card;
 mod collect;
+mod data;
 mod dialect;
 mod keywords;
 mod lex;

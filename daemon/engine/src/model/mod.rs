@@ -41,7 +41,8 @@ pub struct Model {
     pub pairs: Vec<ContactPair>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
-    /// Boundary conditions of the model part (before the first step): all values are zero.
+    /// Boundary conditions of the model part (before the first step): all values are zero. Lines that name single
+    /// nodes are joined per direction; region and place are those of the first.
     pub initial_boundaries: Vec<Boundary>,
     /// Steps in order. Never empty in a validated model.
     pub steps: Vec<Step>,

@@ -5,13 +5,13 @@ use rustc_hash::FxHashSet;
 use crate::law::{LawParameters, NormalBehavior, PressureOverclosure};
 use crate::model::{ContactPair, Dialect, InteractionId, NodeId, SurfaceId, SurfaceInteraction, SurfaceKind};
 
-use super::super::card::{Card, Row};
+use super::super::card::Card;
+use super::super::data::Row;
 use super::super::keywords::Placement;
 use super::super::lex::unquoted;
 use super::super::report::At;
 use super::Builder;
 use super::layout::Layout;
-use super::materials::{lines, single_row};
 
 const INTERACTION: &str = "*SURFACE INTERACTION";
 const BEHAVIOR: &str = "*SURFACE BEHAVIOR";
@@ -72,8 +72,8 @@ impl Builder<'_> {
             return false;
         }
         let mut node_area = 1.0;
-        if !lines(card).is_empty() {
-            let row = single_row(card, "area of each node of a node-based surface", self.report);
+        if card.first_line().is_some() {
+            let row = card.single_row("area of each node of a node-based surface", self.report);
             match row.and_then(|row| row.real(0, "area per node", Some(1.0), self.report)) {
                 Some(area) if area > 0.0 => node_area = area,
                 Some(area) => {
@@ -100,7 +100,7 @@ impl Builder<'_> {
     }
 
     fn friction(&mut self, card: &Card) {
-        for line in lines(card) {
+        for line in card.lines().iter() {
             let row = line.row(card.keyword.name);
             match row.real(0, "friction coefficient", Some(0.0), self.report) {
                 None | Some(0.0) => {}
@@ -147,7 +147,7 @@ impl Builder<'_> {
             "TABULAR" => self.tabular(card),
             "EXPONENTIAL" => self.exponential(card),
             _ => {
-                if let (Some(line), true) = (lines(card).first(), sound) {
+                if let (Some(line), true) = (card.first_line(), sound) {
                     self.report.error(
                         line.at,
                         BEHAVIOR,
@@ -174,14 +174,14 @@ impl Builder<'_> {
     }
 
     fn linear(&mut self, card: &Card) -> Option<LawParameters> {
-        let row = single_row(card, "slope", self.report)?;
+        let row = card.single_row("slope", self.report)?;
         self.extra_items(&row, 1, "the arctangent smoothing of CalculiX (σ∞, c0) is not applied: pressure is 0 when open, slope times overclosure when closed");
         let stiffness = row.real(0, "slope", None, self.report)?;
         self.checked(LawParameters::Linear { stiffness }, row.at)
     }
 
     fn exponential(&mut self, card: &Card) -> Option<LawParameters> {
-        let row = single_row(card, "clearance at zero pressure c0, pressure at zero clearance p0", self.report)?;
+        let row = card.single_row("clearance at zero pressure c0, pressure at zero clearance p0", self.report)?;
         let clearance = row.real(0, "clearance c0", None, self.report);
         let pressure = row.real(1, "pressure p0", None, self.report);
         match self.model.dialect {
@@ -210,7 +210,7 @@ impl Builder<'_> {
     fn tabular(&mut self, card: &Card) -> Option<LawParameters> {
         let mut points = Vec::new();
         let mut sound = true;
-        for line in lines(card) {
+        for line in card.lines().iter() {
             let row = line.row(BEHAVIOR);
             row.at_most(2, self.report);
             let pressure = row.real(0, "pressure", Some(0.0), self.report);
@@ -227,7 +227,7 @@ impl Builder<'_> {
             let message = "beyond the last point the table goes on with its last slope; CalculiX would keep the pressure constant";
             self.report.warning(card.at, BEHAVIOR, message, "end the table beyond the overclosures that occur");
         }
-        self.checked(LawParameters::Tabular { points }, lines(card).first().map_or(card.at, |line| line.at))
+        self.checked(LawParameters::Tabular { points }, card.first_line().map_or(card.at, |line| line.at))
     }
 
     /// Items that only CalculiX knows: an error, or in its dialect a warning that says what is not done.
@@ -279,7 +279,7 @@ impl Builder<'_> {
                     "add SMALL SLIDING to say so; the run stops when a point slides beyond half a face",
                 );
             }
-            if lines(card).is_empty() {
+            if card.first_line().is_none() {
                 self.report.error(
                     card.at,
                     PAIR,
@@ -287,7 +287,7 @@ impl Builder<'_> {
                     "write: secondary surface, primary surface",
                 );
             }
-            for line in lines(card) {
+            for line in card.lines().iter() {
                 let row = line.row(PAIR);
                 let (secondary, primary) =
                     (self.pair_surface(&row, 0, "secondary"), self.pair_surface(&row, 1, "primary"));

@@ -6,12 +6,11 @@ use crate::model::{
     ElementFace, ElementId, ElementSet, Load, LoadKind, LoadsRemoved, MaterialId, Region, SetId, SurfaceId, SurfaceKind,
 };
 
-use super::super::card::Row;
+use super::super::data::Row;
 use super::super::lex::{key, unquoted};
 use super::super::report::{At, excerpt};
 use super::Builder;
 use super::layout::StepCards;
-use super::materials::lines;
 use super::regions::Members;
 
 const CLOAD: &str = "*CLOAD";
@@ -52,7 +51,7 @@ impl Builder<'_> {
             if card.faulty {
                 continue;
             }
-            for line in lines(card) {
+            for line in card.lines().iter() {
                 let row = line.row(card.keyword.name);
                 let load = match card.keyword.name {
                     CLOAD => self.concentrated(&row),

@@ -2,7 +2,7 @@
 
 use crate::model::{Amplitude, AmplitudeClock, Material, MaterialId, SetId, SolidSection};
 
-use super::super::card::{Body, Card, DataLine, Row};
+use super::super::card::Card;
 use super::super::keywords::Placement;
 use super::super::lex::real;
 use super::super::report::{At, Report, excerpt};
@@ -12,28 +12,6 @@ use super::layout::{Layout, is_refused};
 const MATERIAL: &str = "*MATERIAL";
 const SECTION: &str = "*SOLID SECTION";
 const AMPLITUDE: &str = "*AMPLITUDE";
-
-/// Data lines of a card.
-pub fn lines(card: &Card) -> &[DataLine] {
-    match &card.body {
-        Body::Lines(lines) => lines,
-        _ => &[],
-    }
-}
-
-/// The only data line of a card; none or more are reported.
-#[track_caller]
-pub fn single_row<'c>(card: &'c Card, what: &str, report: &mut Report) -> Option<Row<'c>> {
-    let lines = lines(card);
-    let name = card.keyword.name;
-    if let Some(second) = lines.get(1) {
-        report.error(second.at, name, "a second data line is not read here", format!("write one line: {what}"));
-    }
-    if lines.is_empty() {
-        report.error(card.at, name, "the data line is missing", format!("write one line: {what}"));
-    }
-    lines.first().map(|line| line.row(name))
-}
 
 /// A material that is being read.
 struct Draft {
@@ -201,7 +179,7 @@ impl Draft {
         let name = card.keyword.name;
         if name == "*DENSITY" {
             let what = "density";
-            let value = single_row(card, what, report).and_then(|row| row.real(0, "density", None, report));
+            let value = card.single_row(what, report).and_then(|row| row.real(0, "density", None, report));
             match value {
                 Some(density) if density > 0.0 => self.density = Some(density),
                 Some(density) => report.error(
@@ -221,7 +199,7 @@ impl Draft {
         if card.faulty {
             return;
         }
-        let Some(row) = single_row(card, "Young's modulus, Poisson's ratio", report) else { return };
+        let Some(row) = card.single_row("Young's modulus, Poisson's ratio", report) else { return };
         let modulus = row.real(0, "Young's modulus", None, report);
         let ratio = row.real(1, "Poisson's ratio", None, report);
         let (Some(modulus), Some(ratio)) = (modulus, ratio) else { return };
@@ -244,7 +222,7 @@ fn amplitude_points(card: &Card, report: &mut Report) -> Option<Vec<(f64, f64)>>
         return None;
     }
     let mut points: Vec<(f64, f64)> = Vec::new();
-    for line in lines(card) {
+    for line in card.lines().iter() {
         let mut row = line.row(AMPLITUDE);
         while row.fields.last().is_some_and(|field| field.is_empty()) {
             row.fields.pop();

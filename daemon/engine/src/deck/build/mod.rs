@@ -14,7 +14,7 @@ mod sets;
 mod steps;
 mod surfaces;
 
-use crate::model::{Boundary, Dialect, Model, SurfaceId};
+use crate::model::{Boundary, Dialect, Model, Region, SurfaceId};
 
 use super::card::Deck;
 use super::report::{At, Report};
@@ -102,8 +102,25 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
 impl Builder<'_> {
     fn build_initial_boundaries(&mut self, layout: &Layout<'_>) {
         let mut boundaries: Vec<Boundary> = Vec::new();
+        // Lines of single nodes, which generators write by the thousand, are joined per direction.
+        let mut joined: [Option<usize>; 3] = [None; 3];
         for card in layout.model.iter().filter(|card| card.keyword.name == "*BOUNDARY") {
-            boundaries.extend(self.boundary_card(card, Part::Model).into_iter().map(|(_, boundary)| boundary));
+            for (_, boundary) in self.boundary_card(card, Part::Model) {
+                let slot = &mut joined[boundary.direction as usize];
+                match (&boundary.region, &*slot) {
+                    (Region::Label(_), Some(first)) => boundaries[*first].nodes.extend(boundary.nodes),
+                    (Region::Label(_), None) => {
+                        *slot = Some(boundaries.len());
+                        boundaries.push(boundary);
+                    }
+                    _ => boundaries.push(boundary),
+                }
+            }
+        }
+        for boundary in joined.into_iter().flatten() {
+            let nodes = &mut boundaries[boundary].nodes;
+            nodes.sort_unstable();
+            nodes.dedup();
         }
         self.model.initial_boundaries = boundaries;
     }

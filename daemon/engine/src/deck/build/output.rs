@@ -7,7 +7,6 @@ use super::super::lex::{fields, key};
 use super::super::report::{Report, excerpt};
 use super::Builder;
 use super::layout::StepCards;
-use super::materials::lines;
 
 /// The three ways to ask.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -241,7 +240,7 @@ impl Builder<'_> {
 fn variables(card: &Card, subject: Subject, report: &mut Report) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut named = false;
-    for line in lines(card) {
+    for line in card.lines().iter() {
         for field in fields(line.text.as_bytes()).filter(|field| !field.is_empty()) {
             named = true;
             let word = key(&String::from_utf8_lossy(field));

@@ -6,12 +6,12 @@ use rustc_hash::FxHashMap;
 
 use crate::model::{Boundary, Model, NodeId};
 
-use super::super::card::{Card, Row};
+use super::super::card::Card;
+use super::super::data::Row;
 use super::super::lex::{key, looks_numeric};
 use super::super::report::{At, excerpt};
 use super::Builder;
 use super::layout::Layout;
-use super::materials::lines;
 
 const BOUNDARY: &str = "*BOUNDARY";
 
@@ -47,7 +47,7 @@ impl Builder<'_> {
             return Vec::new();
         }
         let mut boundaries = Vec::new();
-        for line in lines(card) {
+        for line in card.lines().iter() {
             let row = line.row(BOUNDARY);
             row.at_most(4, self.report);
             let region = self.node_region(&row);

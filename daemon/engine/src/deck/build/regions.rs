@@ -2,7 +2,8 @@
 
 use crate::model::{AmplitudeId, ElementId, NodeId, Region, SetId};
 
-use super::super::card::{Card, Row};
+use super::super::card::Card;
+use super::super::data::Row;
 use super::super::lex::{self, looks_numeric, unquoted};
 use super::super::report::{At, excerpt};
 use super::Builder;

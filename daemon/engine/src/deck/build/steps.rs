@@ -4,12 +4,12 @@ use rustc_hash::FxHashSet;
 
 use crate::model::{Procedure, StaticControl, Step};
 
-use super::super::card::{Card, Row};
+use super::super::card::Card;
+use super::super::data::Row;
 use super::super::lex::{self, key};
 use super::super::report::{Report, excerpt};
 use super::Builder;
 use super::layout::{Layout, StepCards};
-use super::materials::lines;
 use super::output::Requests;
 use super::prescribed::Part;
 
@@ -120,8 +120,7 @@ fn static_control(card: &Card, report: &mut Report) -> StaticControl {
     let direct = card.parameters.has("DIRECT");
     let default =
         StaticControl { increment_initial: 1.0, period: 1.0, increment_min: 1e-5, increment_max: 1.0, direct };
-    let lines = lines(card);
-    if let Some(second) = lines.get(1) {
+    if let Some(second) = card.lines().get(1) {
         report.error(
             second.at,
             STATIC,
@@ -129,7 +128,7 @@ fn static_control(card: &Card, report: &mut Report) -> StaticControl {
             "write one line: increment, period, smallest, largest",
         );
     }
-    let Some(row) = lines.first().map(|line| line.row(STATIC)) else { return default };
+    let Some(row) = card.first_line().map(|line| line.row(STATIC)) else { return default };
     row.at_most(4, report);
     let mut items = [0.0; 4];
     for (i, what) in ["initial increment", "period", "smallest increment", "largest increment"].into_iter().enumerate()
