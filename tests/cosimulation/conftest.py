@@ -52,6 +52,26 @@ def deck_fmu(work, deck_file):
     return Fmu.unpack(deck_file, work / "deck")
 
 
+def punch_of(work, law):
+    """The punch with another contact law, unpacked."""
+    deck = work / f"punch_{law}.inp"
+    generate_deck.generate(["punch", str(PUNCH), str(deck), "--law", law])
+    pack(deck, "-o", deck.with_suffix(".fmu"))
+    return Fmu.unpack(deck.with_suffix(".fmu"), work / f"fmu_{law}")
+
+
+@pytest.fixture(scope="session")
+def hard_fmu(work):
+    """Hard contact: multipliers and an active set."""
+    return punch_of(work, "hard")
+
+
+@pytest.fixture(scope="session")
+def exponential_fmu(work):
+    """The exponential law: iterations in every increment."""
+    return punch_of(work, "exponential")
+
+
 @pytest.fixture
 def new_instance():
     """Makes instances that are freed at the end of the test."""

@@ -20,9 +20,9 @@ def drive(instance, fmu, point, size, value=None):
     return instance.outputs()
 
 
-@pytest.fixture(params=["law_fmu", "deck_fmu"])
+@pytest.fixture(params=["law_fmu", "deck_fmu", "hard_fmu", "exponential_fmu"])
 def fmu(request):
-    """Both kinds of FMU."""
+    """Both kinds of FMU, and decks whose solution takes different ways."""
     return request.getfixturevalue(request.param)
 
 

@@ -164,7 +164,9 @@ impl ContactSolver {
             self.was_closed.copy_from_slice(closed);
             self.linearise(system, overclosures);
             counts.severe_discontinuity_iterations += self.minimise_model(system, free, free_scale)?;
-            let fraction = if comparable { self.line_search(system, forces, relief, overclosures) } else { 1.0 };
+            // Near the solution the slope of Π is rounding and says nothing: a step that ends balanced is taken whole.
+            let whole = !comparable || self.trial_is_balanced(system, free);
+            let fraction = if whole { 1.0 } else { self.line_search(system, forces, relief, overclosures) };
             comparable = true;
             for i in 0..n {
                 if fraction == 1.0 {
@@ -190,7 +192,7 @@ impl ContactSolver {
             }
         }
         let unsettled = (0..n).filter(|&i| {
-            closed[i] != self.was_closed[i] || !self.point_is_balanced(system, i, free, forces, overclosures)
+            closed[i] != self.was_closed[i] || !self.point_is_balanced(system, i, free, forces, overclosures[i])
         });
         Err(SolveFailure::NotConverged { points: unsettled.map(|i| i as u32).collect() })
     }
@@ -400,7 +402,13 @@ impl ContactSolver {
     }
 
     fn is_balanced(&self, system: &ContactSystem, free: &[f64], forces: &[f64], overclosures: &[f64]) -> bool {
-        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, forces, overclosures))
+        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, forces, overclosures[i]))
+    }
+
+    /// Whether the end of the present step satisfies the laws.
+    fn trial_is_balanced(&self, system: &ContactSystem, free: &[f64]) -> bool {
+        let overclosure = |i: usize| free[i] - self.relief_trial[i];
+        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, &self.trial, overclosure(i)))
     }
 
     fn point_is_balanced(
@@ -409,11 +417,11 @@ impl ContactSolver {
         i: usize,
         free: &[f64],
         forces: &[f64],
-        overclosures: &[f64],
+        overclosure: f64,
     ) -> bool {
         let point = &system.points[i];
         let NormalBehavior::Softened(law) = &system.behaviors[point.behavior] else { return true };
-        let at = law.evaluate(overclosures[i]);
+        let at = law.evaluate(overclosure);
         let scale = self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()));
         let residual = (forces[i] - point.area * at.pressure).abs();
         if residual <= FORCE_TOLERANCE * scale {

@@ -182,3 +182,31 @@ fn a_second_solve_from_the_solution_needs_one_iteration_and_no_new_factor() {
     assert_eq!(counts, SolveCounts { equilibrium_iterations: 1, severe_discontinuity_iterations: 0 });
     assert_eq!(factor, solver.factor);
 }
+
+#[test]
+fn a_solve_that_starts_at_or_beside_the_solution_stays_there() {
+    let mut numbers = Numbers(11);
+    for case in 0..300 {
+        let n = 2 + case % 9;
+        let system = system(compliance(&mut numbers, n, n + 2), softened(), |i| (i + case) % 5);
+        let free: Vec<f64> = (0..n).map(|_| 0.1 * numbers.next()).collect();
+        let (mut forces, _, first) = solve(&system, &free);
+        first.expect("convex");
+        for _ in 0..20 {
+            let nearby: Vec<f64> = free.iter().map(|h| h * (1.0 + 1e-15 * numbers.next())).collect();
+            let (mut relief, mut overclosures) = (vec![0.0; n], vec![0.0; n]);
+            system.relief(&forces, &mut relief);
+            let mut closed: Vec<bool> = forces.iter().map(|&force| force > 0.0).collect();
+            let again = ContactSolver::new(&system).solve(
+                &system,
+                &nearby,
+                &mut forces,
+                &mut relief,
+                &mut closed,
+                &mut overclosures,
+            );
+            let counts = again.unwrap_or_else(|failure| panic!("case {case}: {failure:?}"));
+            assert!(counts.equilibrium_iterations <= 8, "case {case}: {counts:?}");
+        }
+    }
+}
