@@ -105,7 +105,7 @@ impl Builder<'_> {
         // Lines of single nodes, which generators write by the thousand, are joined per direction.
         let mut joined: [Option<usize>; 3] = [None; 3];
         for card in layout.model.iter().filter(|card| card.keyword.name == "*BOUNDARY") {
-            for (_, boundary) in self.boundary_card(card, Part::Model) {
+            self.boundary_card(card, Part::Model, |_, boundary| {
                 let slot = &mut joined[boundary.direction as usize];
                 match (&boundary.region, &*slot) {
                     (Region::Label(_), Some(first)) => boundaries[*first].nodes.extend(boundary.nodes),
@@ -115,7 +115,7 @@ impl Builder<'_> {
                     }
                     _ => boundaries.push(boundary),
                 }
-            }
+            });
         }
         for boundary in joined.into_iter().flatten() {
             let nodes = &mut boundaries[boundary].nodes;

@@ -37,16 +37,15 @@ const NAMED: [(&str, &[u32]); 8] = [
 ];
 
 impl Builder<'_> {
-    /// Lines of a `*BOUNDARY`, one entry per direction, each with its line.
-    pub(super) fn boundary_card(&mut self, card: &Card, part: Part) -> Vec<(At, Boundary)> {
-        let Ok(mut amplitude) = self.amplitude(card) else { return Vec::new() };
+    /// Hands over the lines of a `*BOUNDARY`, one boundary per direction, each with its line.
+    pub(super) fn boundary_card(&mut self, card: &Card, part: Part, mut push: impl FnMut(At, Boundary)) {
+        let Ok(mut amplitude) = self.amplitude(card) else { return };
         if part == Part::Model && amplitude.take().is_some() {
             self.report.warning(card.at, BOUNDARY, "AMPLITUDE is ignored: values before the first step are 0", "");
         }
         if card.faulty {
-            return Vec::new();
+            return;
         }
-        let mut boundaries = Vec::new();
         for line in card.lines().iter() {
             let row = line.row(BOUNDARY);
             row.at_most(4, self.report);
@@ -74,10 +73,9 @@ impl Builder<'_> {
                     amplitude,
                     place: self.map.place(row.at),
                 };
-                boundaries.push((row.at, boundary));
+                push(row.at, boundary);
             }
         }
-        boundaries
     }
 
     /// Directions 0..3 that a line names.

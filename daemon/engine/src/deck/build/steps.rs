@@ -51,10 +51,10 @@ impl Builder<'_> {
             let mut boundaries = Vec::new();
             let mut boundary_lines = Vec::new();
             for card in cards.cards.iter().filter(|card| card.keyword.name == "*BOUNDARY") {
-                for (at, boundary) in self.boundary_card(card, Part::Step) {
+                self.boundary_card(card, Part::Step, |at, boundary| {
                     boundary_lines.push(at);
                     boundaries.push(boundary);
-                }
+                });
             }
             let (loads, load_lines, loads_removed) = self.step_loads(cards);
             self.output_requests(cards, &mut requests);
