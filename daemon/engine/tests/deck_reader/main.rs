@@ -1,0 +1,5 @@
+//! The deck reader through its public face.
+
+mod base;
+mod damage;
+mod rules;
