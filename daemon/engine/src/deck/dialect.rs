@@ -73,7 +73,7 @@ const DIFFERENCES: &[Difference] = &[
     departs(
         "*CONTACT PAIR, contact elements",
         "a point far from the primary surface comes into contact when it gets there",
-        "springs are made for points closer than c0 times the square root of their area, once per increment",
+        "springs are made for points closer than c0 times the square root of their area",
         "as Abaqus: nothing is cut off",
     ),
     departs("*CONTACT PAIR without TYPE", "node-to-surface", "the run stops", "node-to-surface"),
