@@ -56,7 +56,7 @@ impl PreparedModel {
                 Place::nowhere(),
                 "",
                 "the sparse path is not available in this version",
-                "leave --path at auto or dense",
+                "choose the path auto or dense",
             )]);
         }
         announce(Phase::Search);

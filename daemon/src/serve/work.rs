@@ -225,20 +225,7 @@ impl Work {
 
     /// Everything that can be wrong with a step, found before anything is changed.
     fn check_step(&self, request: &StepRequest) -> Result<Vec<(usize, f64)>, Fault> {
-        if !request.time.is_finite() {
-            return Err(Fault::new(
-                FaultCode::NotFinite,
-                format!("target time {} is not a finite number", request.time),
-            ));
-        }
-        let now = self.simulation.time();
-        if request.time < now {
-            let text = format!(
-                "target time {} lies before the present time {now}; restore a checkpoint to go back",
-                request.time
-            );
-            return Err(Fault::new(FaultCode::TimeInPast, text));
-        }
+        self.simulation.check_target(request.time).map_err(|e| convert::advance_error(&e))?;
         let inputs = &self.model.prepared.ports().inputs;
         let mut values = by_name(&self.simulation, &request.inputs)?;
         if request.indices.len() != request.values.len() {

@@ -187,8 +187,9 @@ impl Factor {
             let node = factor.view().supernode(s);
             for i in 0..node.val().ncols() {
                 let (pivot, original) = (node.val()[(i, i)], diagonal.next().unwrap_or(0.0));
-                // Written so that a NaN pivot is refused as well.
-                if !(pivot * pivot > PIVOT_RELATIVE_MIN * original) {
+                // False for a NaN pivot too.
+                let usable = pivot * pivot > PIVOT_RELATIVE_MIN * original;
+                if !usable {
                     return Err(SingularPivot { unknown: node.start() + i });
                 }
             }
