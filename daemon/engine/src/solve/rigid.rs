@@ -46,31 +46,53 @@ pub fn free_motions(mesh: &Mesh, nodes: &[NodeId], prescribed: impl Fn(NodeId, u
     let resisted = |motion: &[f64; 6]| -> f64 {
         (0..6).map(|i| motion[i] * (0..6).map(|j| gram[i][j] * motion[j]).sum::<f64>()).sum()
     };
+    // Motions along and about the axes first; what they do not span is given in numbers.
     let mut words = Vec::new();
+    let mut named: Vec<[f64; 6]> = Vec::new();
     for k in 0..6 {
         let mut motion = [0.0; 6];
         motion[k] = 1.0;
         if resisted(&motion) <= limit {
             let kind = if k < 3 { "translation along" } else { "rotation about" };
             words.push(format!("{kind} {}", k % 3 + 1));
+            named.push(motion);
         }
     }
-    if words.len() < kernel.len() {
-        // A hinge that no coordinate axis through the centroid describes: give it in numbers.
-        for v in kernel {
-            let (t, w) = (&v[..3], &v[3..]);
-            if w.iter().map(|x| x * x).sum::<f64>() > 1e-12 {
-                let through: [f64; 3] = std::array::from_fn(|i| round(centroid[i] + size * axis_point(t, w, i), size));
-                words.push(format!(
-                    "rotation about the direction ({:.3}, {:.3}, {:.3}) through ({:.4e}, {:.4e}, {:.4e})",
-                    w[0], w[1], w[2], through[0], through[1], through[2]
-                ));
-            } else {
-                words.push(format!("translation along ({:.3}, {:.3}, {:.3})", t[0], t[1], t[2]));
-            }
+    for vector in kernel {
+        let mut rest = *vector;
+        for known in &named {
+            let along: f64 = rest.iter().zip(known).map(|(r, k)| r * k).sum();
+            rest.iter_mut().zip(known).for_each(|(r, k)| *r -= along * k);
+        }
+        let length = rest.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length > 1e-6 {
+            let motion = rest.map(|x| x / length);
+            words.push(in_numbers(&motion, centroid, size));
+            named.push(motion);
         }
     }
     words
+}
+
+/// A motion that is not one along or about an axis through the centroid.
+fn in_numbers(motion: &[f64; 6], centroid: [f64; 3], size: f64) -> String {
+    let (t, w) = (&motion[..3], &motion[3..]);
+    let direction = |v: &[f64]| {
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let part = |i: usize| round(v[i] / length, 1.0);
+        format!("({:.3}, {:.3}, {:.3})", part(0), part(1), part(2))
+    };
+    if w.iter().map(|x| x * x).sum::<f64>() <= 1e-12 {
+        return format!("translation along {}", direction(t));
+    }
+    let through: [f64; 3] = std::array::from_fn(|i| round(centroid[i] + size * axis_point(t, w, i), size));
+    format!(
+        "rotation about the direction {} through ({:.4e}, {:.4e}, {:.4e})",
+        direction(w),
+        through[0],
+        through[1],
+        through[2]
+    )
 }
 
 /// Zero instead of a coordinate that is rounding against the size of the body.
@@ -116,6 +138,15 @@ mod tests {
     fn rollers_leave_the_translation_along_them() {
         let (mesh, nodes) = cube();
         assert_eq!(free_motions(&mesh, &nodes, |_, d| d != 2), vec!["translation along 3"]);
+    }
+
+    #[test]
+    fn a_face_held_in_its_plane_leaves_three_motions_told_once_each() {
+        let (mesh, nodes) = cube();
+        let words = free_motions(&mesh, &nodes, |n, d| n.0 >= 4 && d < 2);
+        assert_eq!(words.len(), 3, "{words:?}");
+        assert_eq!(words[0], "translation along 3");
+        assert!(words[1..].iter().all(|w| w.starts_with("rotation about the direction") && w.contains("1.0000e0)")));
     }
 
     #[test]
