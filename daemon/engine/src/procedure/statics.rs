@@ -162,7 +162,7 @@ impl Simulation {
         let slid: Vec<u32> = (0..n)
             .filter(|&i| {
                 work.closed[i]
-                    && work.tangential[i].hypot(work.tangential[n + i]) > SLIDING_MAX * prepared.points[i].face_size
+                    && slid_by(work.tangential[i], work.tangential[n + i]) > SLIDING_MAX * prepared.points[i].face_size
             })
             .map(|i| i as u32)
             .collect();
@@ -289,6 +289,11 @@ fn next_time(control: &StaticControl, now: f64, proposed: f64, target: f64, tole
         end = target;
     }
     (end, end < proposed - tolerance)
+}
+
+/// Length of a tangential displacement from its components [length].
+fn slid_by(first: f64, second: f64) -> f64 {
+    (first * first + second * second).sqrt()
 }
 
 /// Why an attempt failed.
