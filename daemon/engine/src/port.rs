@@ -19,7 +19,7 @@ pub enum Quantity {
     Pressure,
     /// [length/time²]
     Acceleration,
-    /// [length²]
+    /// \[length²\]
     Area,
     /// \[energy\]
     Energy,

@@ -11,11 +11,11 @@ pub struct ContactPointInfo {
     pub pair: u32,
     /// Secondary node.
     pub node: NodeId,
-    /// Tributary area [length²].
+    /// Tributary area \[length²\].
     pub area: f64,
     /// Unit normal of the primary, towards the secondary.
     pub normal: [f64; 3],
-    /// Initial clearance [length].
+    /// Initial clearance \[length\].
     pub clearance: f64,
 }
 
@@ -35,13 +35,13 @@ pub enum ContactStatus {
 pub struct ContactPointResult {
     /// Status.
     pub status: ContactStatus,
-    /// COPEN: clearance [length], negative when the bodies overlap.
+    /// COPEN: clearance \[length\], negative when the bodies overlap.
     pub clearance: f64,
-    /// CPRESS: contact pressure [pressure], positive in compression.
+    /// CPRESS: contact pressure \[pressure\], positive in compression.
     pub pressure: f64,
-    /// CSHEAR1, CSHEAR2 [pressure].
+    /// CSHEAR1, CSHEAR2 \[pressure\].
     pub shear: [f64; 2],
-    /// CSLIP1, CSLIP2: accumulated slip while closed [length].
+    /// CSLIP1, CSLIP2: accumulated slip while closed \[length\].
     pub slip: [f64; 2],
 }
 
@@ -84,14 +84,14 @@ pub struct HistoryRow {
     pub pairs: Vec<PairTotals>,
     /// Energies.
     pub energies: Energies,
-    /// Total reaction force per set of [`PreparedModel::total_set_names`].
+    /// Total reaction force per set of [`PreparedModel::total_set_names`](crate::simulation::PreparedModel::total_set_names).
     pub reactions: Vec<[f64; 3]>,
 }
 
 /// Nodal fields, recovered by one solve. One entry per node.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NodalSolution {
-    /// U [length].
+    /// U \[length\].
     pub displacement: Vec<[f64; 3]>,
     /// RF \[force\]: non-zero at prescribed directions only.
     pub reaction: Vec<[f64; 3]>,
@@ -128,7 +128,7 @@ pub struct StepReport {
 /// A contact point that changed status in an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StatusChange {
-    /// Index into [`PreparedModel::contact_points`].
+    /// Index into [`PreparedModel::contact_points`](crate::simulation::PreparedModel::contact_points).
     pub point: u32,
     /// Status at the end of the increment.
     pub to: ContactStatus,

@@ -45,9 +45,9 @@ pub enum Procedure {
 /// Data line of `*STATIC`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaticControl {
-    /// First (or, with DIRECT, every) increment [time]; defaults to the period.
+    /// First (or, with DIRECT, every) increment \[time\]; defaults to the period.
     pub increment_initial: f64,
-    /// Length of the step [time]; 1 unless given.
+    /// Length of the step \[time\]; 1 unless given.
     pub period: f64,
     /// Smallest increment before the step stops; default 1e-5 of the period (or the first increment, if smaller).
     pub increment_min: f64,
@@ -79,7 +79,7 @@ pub struct Boundary {
     pub nodes: Vec<NodeId>,
     /// Direction, 0..3.
     pub direction: u8,
-    /// Prescribed displacement [length] at amplitude 1.
+    /// Prescribed displacement \[length\] at amplitude 1.
     pub magnitude: f64,
     /// Amplitude, if any; otherwise the step's ramp.
     pub amplitude: Option<AmplitudeId>,

@@ -49,7 +49,7 @@ id!(
 /// Geometry and grouping.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Coordinates [length].
+    /// Coordinates \[length\].
     pub nodes: Vec<[f64; 3]>,
     /// Number that the analyst gave to each node.
     pub node_labels: Vec<u32>,

@@ -53,7 +53,7 @@ pub struct Model {
 pub struct Material {
     /// Name as the analyst wrote it.
     pub name: String,
-    /// Young's modulus [pressure], positive.
+    /// Young's modulus \[pressure\], positive.
     pub youngs_modulus: f64,
     /// Poisson's ratio, in (-1, 0.5).
     pub poissons_ratio: f64,
@@ -77,7 +77,7 @@ pub struct SurfaceInteraction {
     pub name: String,
     /// Normal behaviour: hard or a softened law.
     pub normal: NormalBehavior,
-    /// Area that each point of a node-based secondary surface stands for [length²]; 1 unless given.
+    /// Area that each point of a node-based secondary surface stands for \[length²\]; 1 unless given.
     pub node_area: f64,
 }
 
