@@ -13,6 +13,7 @@ pub mod port;
 pub mod simulation;
 
 mod audit;
+mod examination;
 mod fields;
 mod fingerprint;
 mod observe;

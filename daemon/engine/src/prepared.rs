@@ -1,8 +1,9 @@
 //! Preparation: everything that can be computed before the first increment.
 
-use crate::contact::points::{self, ContactPoint};
+use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::element::brick::Elasticity;
+use crate::examination::{self, Examined};
 use crate::fingerprint::fingerprint;
 use crate::model::{Model, NodeId};
 use crate::outputs::{Outputs, Source};
@@ -16,7 +17,6 @@ use crate::solve::columns::Column;
 use crate::solve::condensed::Condensed;
 use crate::solve::contact::{ContactSystem, PointBehavior};
 use crate::solve::numbering::Bodies;
-use crate::solve::rigid;
 use crate::solve::supports::Supports;
 
 /// Everything that can be computed before the first increment. Immutable; shared by sessions and instances.
@@ -60,19 +60,8 @@ impl PreparedModel {
             )]);
         }
         announce(Phase::Search);
-        let supports = Supports::new(&model);
-        let (points, mut warnings) = points::find(&model);
-        let bodies = Bodies::find(&model.mesh);
-        let mut errors = unattached(&model, &bodies, &supports, &points);
-        errors.extend(unheld(&model, &bodies, &supports));
-        let loading = match Loading::new(&model) {
-            Ok(loading) => Some(loading),
-            Err(found) => {
-                errors.extend(found);
-                None
-            }
-        };
-        let Some(loading) = loading.filter(|_| errors.is_empty()) else { return Err(errors) };
+        let Examined { supports, points, bodies, loading, warnings } = examination::examine(&model)?;
+        let mut errors = Vec::new();
         let mut columns = loading.columns.clone();
         let real_columns = columns.len();
         let outputs = Outputs::new(&model, &supports, &mut columns);
@@ -139,7 +128,6 @@ impl PreparedModel {
                 messages.into_iter().map(as_error).collect::<Vec<_>>()
             })?,
         };
-        warnings.extend(unreachable_loads(&model, &bodies));
         let support_elements = (0..model.mesh.elements.len() as u32)
             .filter(|&e| model.mesh.elements[e as usize].nodes.iter().any(|&n| supports.touches(n)))
             .collect();
@@ -181,6 +169,12 @@ impl PreparedModel {
             load_totals,
             fingerprint,
         })
+    }
+
+    /// What [`Self::prepare`] would find wrong with a model or warn of before it factors anything: bodies that nothing
+    /// holds, secondary nodes without a partner, lines that contradict each other. Cheap.
+    pub fn examine(model: &Model) -> Vec<Diagnostic> {
+        examination::examine(model).map_or_else(|errors| errors, |examined| examined.warnings)
     }
 
     /// The model as the deck describes it.
@@ -275,78 +269,4 @@ fn total_force(column: &Column) -> [f64; 3] {
         }
     }
     total
-}
-
-/// Bodies that the supports do not hold, by name and motion.
-fn unheld(model: &Model, bodies: &Bodies, supports: &Supports) -> Vec<Diagnostic> {
-    let mut errors = Vec::new();
-    for (nodes, elements) in bodies.nodes.iter().zip(&bodies.elements) {
-        let motions = rigid::free_motions(&model.mesh, nodes, |n, d| supports.is_prescribed(n, d));
-        if !motions.is_empty() {
-            errors.push(Diagnostic::error(
-                Place::nowhere(),
-                "*BOUNDARY",
-                format!(
-                    "body {} is not held by its own supports: free are {}; contact alone cannot hold a body in this version",
-                    body_name(model, elements),
-                    motions.join(", ")
-                ),
-                "prescribe enough of its directions by *BOUNDARY",
-            ));
-        }
-    }
-    errors
-}
-
-/// The smallest element set that covers the body, else its first element.
-fn body_name(model: &Model, elements: &[u32]) -> String {
-    let first = elements[0];
-    let covers = |set: &&crate::model::ElementSet| {
-        set.elements.len() >= elements.len()
-            && elements.iter().all(|&e| set.elements.binary_search(&crate::model::ElementId(e)).is_ok())
-    };
-    match model.mesh.element_sets.iter().filter(covers).min_by_key(|s| s.elements.len()) {
-        Some(set) => set.name.clone(),
-        None => format!("of element {}", model.mesh.element_labels[first as usize]),
-    }
-}
-
-/// Contact nodes that no element holds and no support fixes.
-fn unattached(model: &Model, bodies: &Bodies, supports: &Supports, points: &[ContactPoint]) -> Vec<Diagnostic> {
-    let mut reported = rustc_hash::FxHashSet::default();
-    let mut errors = Vec::new();
-    for point in points {
-        let n = point.node;
-        let loose = bodies.of_node[n.index()] == u32::MAX && (0..3).any(|d| !supports.is_prescribed(n, d));
-        if loose && reported.insert(n) {
-            errors.push(Diagnostic::error(
-                model.pairs[point.pair as usize].place.clone(),
-                "*CONTACT PAIR",
-                format!(
-                    "secondary node {} belongs to no element and is not fully prescribed",
-                    model.mesh.node_labels[n.index()]
-                ),
-                "attach it to an element or prescribe its directions 1 to 3",
-            ));
-        }
-    }
-    errors
-}
-
-/// Loads on nodes that belong to no element go nowhere.
-fn unreachable_loads(model: &Model, bodies: &Bodies) -> Vec<Diagnostic> {
-    let mut warnings = Vec::new();
-    for load in model.steps.iter().flat_map(|s| &s.loads) {
-        if let crate::model::LoadKind::Concentrated { nodes, .. } = &load.kind
-            && let Some(n) = nodes.iter().find(|n| bodies.of_node[n.index()] == u32::MAX)
-        {
-            warnings.push(Diagnostic::warning(
-                load.place.clone(),
-                "*CLOAD",
-                format!("node {} belongs to no element: its force acts on nothing", model.mesh.node_labels[n.index()]),
-                "load nodes of elements",
-            ));
-        }
-    }
-    warnings
 }

@@ -5,15 +5,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use overclosure::deck;
+use overclosure::diagnostic::Diagnostic;
 use overclosure::port::{self, Port};
+use overclosure::simulation::PreparedModel;
 
-use super::open::{count, open_deck};
+use super::open::{count, open_deck, report};
 use super::{DialectArg, Exit, complain, print};
 
 /// Arguments of `overclosure check`.
 #[derive(Args)]
 #[command(
-    after_help = "Findings go to stderr, what was understood to stdout. Whether every body is held is found by `run`."
+    after_help = "Findings go to stderr, what was understood to stdout. Bodies that nothing holds are found too."
 )]
 pub struct CheckArgs {
     /// The deck.
@@ -29,7 +31,14 @@ pub fn run(arguments: CheckArgs) -> Exit {
         Ok(opened) => opened,
         Err(exit) => return exit,
     };
-    complain(&count(&arguments.deck, &opened.diagnostics));
+    let mut diagnostics = opened.diagnostics;
+    let found = PreparedModel::examine(&opened.model);
+    report(&found);
+    diagnostics.extend(found);
+    complain(&count(&arguments.deck, &diagnostics));
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Exit::InputWrong;
+    }
     let mut text = deck::summary(&opened.model);
     list(&mut text, &port::inputs_of(&opened.model));
     match print(&text) {

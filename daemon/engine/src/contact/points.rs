@@ -2,7 +2,7 @@
 //!
 //! Small sliding: the anchor, the normal and the tangents are those of the undeformed bodies. The anchor is the
 //! closest point of the primary surface that faces the secondary node; a node that hangs over the edge of the surface
-//! by at most a tenth of the face is taken along (EXTENSION ZONE of `*CONTACT PAIR`, default 0.1).
+//! by no more than EXTENSION ZONE of `*CONTACT PAIR` times the size of the face is taken along.
 
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{PointDistance, RTree};
@@ -11,9 +11,6 @@ use rustc_hash::FxHashMap;
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{self, cross, dot, norm, sub};
 use crate::model::{ElementFace, Mesh, Model, NodeId, SurfaceKind};
-
-/// Part of a face's size by which a secondary node may hang over the edge of the primary surface.
-const EXTENSION_ZONE: f64 = 0.1;
 
 /// One node-to-surface constraint.
 #[derive(Clone, Debug)]
@@ -87,7 +84,13 @@ impl Primary {
     }
 
     /// Anchor of a secondary node: the nearest face that faces it, with the normals of equally near faces averaged.
-    fn anchor(&self, mesh: &Mesh, node: NodeId, facing: Option<[f64; 3]>) -> Option<(u32, quad::Projection)> {
+    fn anchor(
+        &self,
+        mesh: &Mesh,
+        node: NodeId,
+        facing: Option<[f64; 3]>,
+        extension_zone: f64,
+    ) -> Option<(u32, quad::Projection)> {
         let position = mesh.nodes[node.index()];
         let mut found: Vec<(u32, quad::Projection)> = Vec::new();
         let mut nearest = f64::INFINITY;
@@ -103,7 +106,7 @@ impl Primary {
             }
             let Some(projection) = quad::project(&self.corners[face], position) else { continue };
             let averted = facing.is_some_and(|outward| dot(outward, projection.normal) >= 0.0);
-            if averted || projection.overhang > EXTENSION_ZONE * self.sizes[face] {
+            if averted || projection.overhang > extension_zone * self.sizes[face] + hair {
                 continue;
             }
             nearest = nearest.min(projection.distance);
@@ -170,7 +173,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         let total = secondaries.len();
         let mut lost = Vec::new();
         for (node, area, outward) in secondaries {
-            let Some((face, p)) = primary.anchor(mesh, node, outward) else {
+            let Some((face, p)) = primary.anchor(mesh, node, outward, pair.extension_zone) else {
                 lost.push(mesh.node_labels[node.index()]);
                 continue;
             };

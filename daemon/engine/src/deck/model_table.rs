@@ -299,7 +299,7 @@ pub const MODEL: &[Keyword] = &[
             P::flag("SMALL SLIDING"),
             P::silent("NO THICKNESS"),
             P::silent("CPSET"),
-            P::ignored("EXTENSION ZONE", "sliding is small; projections end at the edge of the primary surface"),
+            P::value("EXTENSION ZONE"),
             P::ignored("HCRIT", "a large overclosure does not cut the increment back"),
             P::ignored("SMOOTH", "sliding is small; the primary surface is used as meshed"),
             P::ignored("SLIDE DISTANCE", "sliding is small"),

@@ -92,6 +92,8 @@ pub struct ContactPair {
     pub primary: SurfaceId,
     /// Interaction of the pair.
     pub interaction: InteractionId,
+    /// Part of a face's size by which a secondary node may hang over the edge of the primary surface; 0.1 unless given.
+    pub extension_zone: f64,
     /// Where the pair was defined, for diagnostics.
     pub place: crate::diagnostic::Place,
 }

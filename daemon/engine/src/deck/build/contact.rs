@@ -8,13 +8,17 @@ use crate::model::{ContactPair, Dialect, InteractionId, NodeId, SurfaceId, Surfa
 use super::super::card::Card;
 use super::super::data::Row;
 use super::super::keywords::Placement;
-use super::super::lex::unquoted;
+use super::super::lex::{real, unquoted};
 use super::super::report::At;
 use super::Builder;
 use super::layout::Layout;
 
 const INTERACTION: &str = "*SURFACE INTERACTION";
 const BEHAVIOR: &str = "*SURFACE BEHAVIOR";
+/// Part of a face by which a secondary node may hang over the edge of the primary surface.
+const EXTENSION_ZONE: f64 = 0.1;
+/// Largest EXTENSION ZONE.
+const EXTENSION_ZONE_MAX: f64 = 0.2;
 const PAIR: &str = "*CONTACT PAIR";
 
 impl Builder<'_> {
@@ -287,6 +291,7 @@ impl Builder<'_> {
                     "write: secondary surface, primary surface",
                 );
             }
+            let extension_zone = self.extension_zone(card.parameters.value("EXTENSION ZONE"), card.at);
             for line in card.lines().iter() {
                 let row = line.row(PAIR);
                 let (secondary, primary) =
@@ -301,9 +306,15 @@ impl Builder<'_> {
                 }
                 let (Some(secondary), Some(primary)) = (secondary, primary) else { continue };
                 if self.pair_is_sound(&row, secondary, primary)
-                    && let (Some(interaction), false) = (interaction, card.faulty)
+                    && let (Some(interaction), Some(extension_zone), false) = (interaction, extension_zone, card.faulty)
                 {
-                    self.push_pair(&row, secondary, primary, InteractionId(interaction));
+                    let place = self.map.place(row.at);
+                    let interaction = InteractionId(interaction);
+                    let name = self.pair_name(secondary, primary);
+                    self.push_pair(
+                        ContactPair { name, secondary, primary, interaction, extension_zone, place },
+                        row.at,
+                    );
                 }
             }
         }
@@ -378,15 +389,36 @@ impl Builder<'_> {
         nodes
     }
 
-    fn push_pair(&mut self, row: &Row<'_>, secondary: SurfaceId, primary: SurfaceId, interaction: InteractionId) {
+    /// EXTENSION ZONE: part of a face, 0.1 unless given, at most 0.2 as in the manual.
+    fn extension_zone(&mut self, text: Option<&str>, at: At) -> Option<f64> {
+        let Some(text) = text else { return Some(EXTENSION_ZONE) };
+        match real(text.trim().as_bytes()) {
+            Ok(zone) if (0.0..=EXTENSION_ZONE_MAX).contains(&zone) => Some(zone),
+            _ => {
+                let message = format!("EXTENSION ZONE={text}: not a number from 0 to {EXTENSION_ZONE_MAX}");
+                self.report.error(
+                    at,
+                    PAIR,
+                    message,
+                    "give the part of a face by which the primary surface is extended",
+                );
+                None
+            }
+        }
+    }
+
+    fn pair_name(&self, secondary: SurfaceId, primary: SurfaceId) -> String {
         let name = |surface: SurfaceId| &self.model.mesh.surfaces[surface.index()].name;
-        let pair_name = format!("{}_{}", name(secondary), name(primary));
-        if !self.pairs.insert((secondary, primary)) {
-            self.report.error(row.at, PAIR, format!("the pair {pair_name} is given twice"), "remove one of the lines");
+        format!("{}_{}", name(secondary), name(primary))
+    }
+
+    fn push_pair(&mut self, pair: ContactPair, at: At) {
+        if !self.pairs.insert((pair.secondary, pair.primary)) {
+            let message = format!("the pair {} is given twice", pair.name);
+            self.report.error(at, PAIR, message, "remove one of the lines");
             return;
         }
-        let place = self.map.place(row.at);
-        self.model.pairs.push(ContactPair { name: pair_name, secondary, primary, interaction, place });
+        self.model.pairs.push(pair);
     }
 }
 
