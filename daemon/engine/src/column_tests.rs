@@ -257,6 +257,21 @@ fn an_open_unloaded_column_passes_the_audit() {
 }
 
 #[test]
+fn before_the_first_increment_an_overlap_carries_nothing() {
+    let mut model = column(exponential(), 0.0);
+    for node in &mut model.mesh.nodes[8..] {
+        node[2] -= 0.005;
+    }
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
+    let mut s = Simulation::new(Arc::new(prepared));
+    assert_eq!(s.history().energies, Energies::default());
+    assert!(s.contact_results().iter().all(|p| p.pressure == 0.0 && (p.clearance + 0.005).abs() < 1e-15));
+    assert_eq!(s.advance(0.05, &mut ()), Ok(AdvanceOutcome::Reached));
+    assert!(s.contact_results().iter().all(|p| p.status == ContactStatus::Closed && p.pressure > 0.0));
+    assert!(s.history().energies.contact > 0.0);
+}
+
+#[test]
 fn nonsense_from_outside_is_refused() {
     let mut s = simulation(NormalBehavior::Hard, 0.08);
     assert!(matches!(s.set(0, f64::NAN), Err(SetError::NotFinite { .. })));

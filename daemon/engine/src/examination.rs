@@ -50,7 +50,7 @@ fn unheld(model: &Model, bodies: &Bodies, supports: &Supports) -> Vec<Diagnostic
                 Place::nowhere(),
                 "*BOUNDARY",
                 format!(
-                    "body {} is not held by its own supports: free are {}; contact alone cannot hold a body in this version",
+                    "body {} is not held by its own supports, which leave it {}; contact alone cannot hold a body in this version",
                     body_name(model, elements),
                     motions.join(", ")
                 ),

@@ -49,7 +49,7 @@ impl Simulation {
             pair.force_magnitude = pair.force.iter().map(|f| f * f).sum::<f64>().sqrt();
         }
         let strain = prepared.condensed.strain_energy(&state.coefficients, &state.forces, &derived.relief);
-        let contact = prepared.contact.energy(&derived.overclosures);
+        let contact = prepared.contact.energy(&derived.overclosures, &state.closed);
         derived.energies = Energies {
             strain,
             contact,

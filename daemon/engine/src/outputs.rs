@@ -24,7 +24,7 @@ pub enum Source {
     PairOpen(usize),
     /// Generalised value of a column; none where no direction of the set takes part.
     Generalised(Option<usize>),
-    /// One of the energies, in the order of [`ENERGY_NAMES`].
+    /// One of the energies, in the order of [`ENERGIES`].
     Energy(usize),
     /// Increments so far, all steps.
     Increments,
@@ -38,8 +38,17 @@ pub enum Source {
     LastStatusChange,
 }
 
-/// Names of the energies, in the order of the history.
-pub const ENERGY_NAMES: [&str; 8] = ["ALLSE", "ALLKE", "ALLWK", "ALLFD", "ALLVD", "ALLCCE", "IMPACT_LOSS", "ETOTAL"];
+/// Names of the energies, in the order of the history, and what they are.
+pub const ENERGIES: [(&str, &str); 8] = [
+    ("ALLSE", "Strain energy of the bodies"),
+    ("ALLKE", "Kinetic energy"),
+    ("ALLWK", "Work of loads and prescribed displacements, by the trapezoidal rule over the increments"),
+    ("ALLFD", "Energy dissipated by friction"),
+    ("ALLVD", "Energy dissipated by viscous and contact damping"),
+    ("ALLCCE", "Energy stored in softened contact"),
+    ("IMPACT_LOSS", "Kinetic energy lost in impacts"),
+    ("ETOTAL", "Stored and dissipated energy less external work; its drift is the error of the energy balance"),
+];
 
 /// Columns that only outputs and the audit need, behind the real ones.
 pub struct Outputs {
@@ -106,13 +115,8 @@ impl Outputs {
         let all: Vec<NodeId> =
             (0..model.mesh.nodes.len() as u32).map(NodeId).filter(|&n| supports.touches(n)).collect();
         out.all_reactions = std::array::from_fn(|d| reaction(&all, d, columns));
-        for (index, name) in ENERGY_NAMES.iter().enumerate() {
-            out.add(
-                format!("energy.{name}"),
-                Quantity::Energy,
-                format!("{name} of the whole model"),
-                Source::Energy(index),
-            );
+        for (index, (name, what)) in ENERGIES.iter().enumerate() {
+            out.add(format!("energy.{name}"), Quantity::Energy, (*what).into(), Source::Energy(index));
         }
         let counts = [
             ("increments", Source::Increments, "Increments completed"),

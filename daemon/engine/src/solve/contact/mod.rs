@@ -59,13 +59,16 @@ impl ContactSystem {
         self.compliance.multiply_add(forces, out);
     }
 
-    /// Energy stored in softened contact.
-    pub fn energy(&self, overclosures: &[f64]) -> f64 {
-        let stored = |(p, &h): (&PointBehavior, &f64)| match &self.behaviors[p.behavior] {
-            NormalBehavior::Hard => 0.0,
-            NormalBehavior::Softened(law) => p.area * law.evaluate(h).energy,
-        };
-        self.points.iter().zip(overclosures).map(stored).sum()
+    /// Energy stored in softened contact at the closed points: before the first increment nothing is closed yet, however
+    /// far the meshes overlap.
+    pub fn energy(&self, overclosures: &[f64], closed: &[bool]) -> f64 {
+        let mut sum = 0.0;
+        for (i, point) in self.points.iter().enumerate().filter(|&(i, _)| closed[i]) {
+            if let NormalBehavior::Softened(law) = &self.behaviors[point.behavior] {
+                sum += point.area * law.evaluate(overclosures[i]).energy;
+            }
+        }
+        sum
     }
 
     /// Whether a point is under hard contact.
