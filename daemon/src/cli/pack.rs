@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args, ValueEnum};
 use overclosure_packer::{DeckRequest, LIBRARY_VARIABLE, PackError, PackReport, find_library, pack_deck, pack_law};
 
-use super::open::{count, read_ports, report};
+use super::open::{WHAT_BECOMES_AN_INPUT, count, read_ports, report};
 use super::{DialectArg, Exit, PathArg, complain};
 
 /// Arguments of `overclosure pack`.
@@ -29,7 +29,7 @@ pub struct PackArgs {
     /// The FMU to write; an existing file is replaced.
     #[arg(short, long, value_name = "FILE.fmu")]
     output: PathBuf,
-    /// Names and units of ports [default: ports.toml beside the deck, if there is one].
+    /// Names and units of ports [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
     #[arg(long, value_name = "PORTS.toml")]
     ports: Option<PathBuf>,
     /// What keywords mean where codes disagree.
@@ -85,6 +85,9 @@ pub fn run(arguments: PackArgs) -> Exit {
     };
     match packed {
         Ok(packed) => {
+            if packed.inputs == 0 {
+                complain(&format!("note: the FMU has no inputs; {WHAT_BECOMES_AN_INPUT}"));
+            }
             tell(&output, &packed);
             Exit::Done
         }

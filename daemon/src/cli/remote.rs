@@ -10,6 +10,7 @@ use overclosure_client::{
 };
 use overclosure_protocol::DEFAULT_ENDPOINT;
 
+use super::open::read_ports;
 use super::{DialectArg, Exit, PathArg, complain, print};
 
 /// Verbs that talk to a daemon.
@@ -50,6 +51,9 @@ pub struct SessionsArgs {
     /// Solver path, for --open.
     #[arg(long, requires = "open")]
     path: Option<PathArg>,
+    /// Names and units of ports, for --open [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
+    #[arg(long, requires = "open", value_name = "FILE")]
+    ports: Option<PathBuf>,
     /// Ends this session.
     #[arg(long, value_name = "SESSION")]
     close: Option<String>,
@@ -210,7 +214,9 @@ fn open(path: &std::path::Path, arguments: &SessionsArgs) -> Result<Exit, Failur
             return Ok(Exit::InputWrong);
         }
     };
+    let ports_toml = read_ports(arguments.ports.as_deref(), path)?;
     let request = OpenRequest {
+        ports_toml,
         label: path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()),
         dialect: match arguments.dialect {
             None | Some(DialectArg::Abaqus) => Dialect::Abaqus,

@@ -42,7 +42,7 @@ pub struct RunArgs {
     /// Threads; the results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
-    /// Names and units of ports [default: ports.toml beside the deck, if there is one].
+    /// Names and units of ports [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
     #[arg(long, value_name = "FILE")]
     ports: Option<PathBuf>,
     /// Nothing on the terminal but findings.

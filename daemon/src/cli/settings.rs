@@ -2,6 +2,7 @@
 
 use overclosure::port::Port;
 
+use super::open::WHAT_BECOMES_AN_INPUT;
 use super::{Exit, complain};
 
 /// A value for an input.
@@ -50,7 +51,7 @@ pub fn resolve(assignments: &[Assignment], inputs: &[Port]) -> Result<Vec<Settin
     }
     let names: Vec<&str> = inputs.iter().map(|p| p.name.as_str()).collect();
     complain(&if names.is_empty() {
-        "this deck has no inputs: its last step has no load or prescribed displacement other than zero".to_owned()
+        format!("this deck has no inputs; {WHAT_BECOMES_AN_INPUT}")
     } else {
         format!("the inputs of this deck are {}", names.join(", "))
     });

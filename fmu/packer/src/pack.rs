@@ -230,8 +230,12 @@ impl Product<'_> {
         let guid = self.guid(&code).map_err(unwritable)?;
         let archive = self.archive(&guid, code).map_err(unwritable)?;
         let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut draft =
-            tempfile::Builder::new().prefix(".packing-").suffix(".fmu").tempfile_in(folder).map_err(unwritable)?;
+        let mut draft = tempfile::Builder::new()
+            .prefix(".packing-")
+            .suffix(".fmu")
+            // Opened here, because the error of tempfile_in names the draft: a name that means nothing to anybody.
+            .make_in(folder, |path| fs::OpenOptions::new().read(true).write(true).create_new(true).open(path))
+            .map_err(unwritable)?;
         archive.write(io::BufWriter::new(draft.as_file_mut())).map_err(unwritable)?;
         trial::try_out(draft.path(), &self.plan)?;
         fs::set_permissions(draft.path(), fs::Permissions::from_mode(0o644)).map_err(unwritable)?;
