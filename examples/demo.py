@@ -28,7 +28,7 @@ import generate_deck
 ROOT = Path(__file__).resolve().parent.parent
 INCREMENTS = 20
 DECKS = {"punch": 16, "hertz": 54}
-OUTPUT = ["--small-sliding", "--field-frequency", 5]
+OUTPUT = ["--field-frequency", 5]
 WAYS = ("overclosure run", "daemon session", "FMU in FMPy")
 PAIR = "SSL_SMA"
 
@@ -275,8 +275,8 @@ def hertz_theory(force, radius=10.0, thickness=0.5, poisson=0.3):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo")
-    parser.add_argument("--no-pictures", dest="pictures", action="store_false")
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo", help="folder to write into [%(default)s]")
+    parser.add_argument("--no-pictures", dest="pictures", action="store_false", help="table only")
     options = parser.parse_args()
     out = options.out
     out.mkdir(parents=True, exist_ok=True)

@@ -181,8 +181,7 @@ def write(path, kind, size, options):
         lines += [f"*SOLID SECTION, ELSET={part}, MATERIAL=M{part}"]
     lines += ["*SURFACE INTERACTION, NAME=CONTACT"]
     lines += law_lines(options.law, stiffness, options.table, options.c0, options.p0)
-    sliding = ", SMALL SLIDING" if options.small_sliding else ""
-    lines += [f"*CONTACT PAIR, INTERACTION=CONTACT, TYPE=NODE TO SURFACE{sliding}", "SSL, SMA"]
+    lines += ["*CONTACT PAIR, INTERACTION=CONTACT, TYPE=NODE TO SURFACE, SMALL SLIDING", "SSL, SMA"]
     lines += ["*BOUNDARY", *problem.supports]
     if options.increments:
         lines += [f"*STEP, INC={max(100, options.increments)}", "*STATIC, DIRECT", f"{1.0 / options.increments!r}, 1."]
@@ -194,6 +193,7 @@ def write(path, kind, size, options):
         every = f", FREQUENCY={options.field_frequency}" if options.field_frequency > 1 else ""
         lines += [f"*CONTACT FILE{every}", "CDIS, CSTR", f"*NODE FILE{every}", "U"]
     lines += ["*END STEP"]
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
     Path(path).write_text("\n".join(lines) + "\n", encoding="ascii")
     return deck
 
@@ -201,39 +201,57 @@ def write(path, kind, size, options):
 def table(text):
     """`p1:h1,p2:h2,...` as pairs."""
     try:
-        return [tuple(float(v) for v in pair.split(":", 1)) for pair in text.split(",")]
+        return [(float(p), float(h)) for p, h in (pair.split(":") for pair in text.split(","))]
     except ValueError as error:
-        raise argparse.ArgumentTypeError(f"{text!r} is not p1:h1,p2:h2,...") from error
+        raise argparse.ArgumentTypeError(f"{text!r} is not p1:h1,p2:h2,... (pressure:overclosure)") from error
+
+
+class Help(argparse.ArgumentDefaultsHelpFormatter, argparse.RawDescriptionHelpFormatter):
+    """Keeps the lines of the description, and tells the defaults."""
+
+    def _get_help_string(self, action):
+        # A default of None is told in words by the help itself.
+        return action.help if action.default is None or action.default is True else super()._get_help_string(action)
+
+
+def told(name, text="{:g}".format):
+    """Defaults of both kinds, for the help: ` (default: punch ..., hertz ...)`."""
+    values = ", ".join(f"{kind} {text(getattr(problem, name))}" for kind, problem in PROBLEMS.items())
+    return f" (default: {values})"
 
 
 def parser():
     """Command line."""
-    result = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    result.add_argument("kind", choices=PROBLEMS)
+    result = argparse.ArgumentParser(description=__doc__, formatter_class=Help)
+    result.add_argument("kind", choices=PROBLEMS, help="which deck")
     result.add_argument("size", type=int, help="bricks per punch side, or along the quarter arc")
     result.add_argument("deck", help="file to write")
-    result.add_argument("--law", choices=LAWS, default="linear")
-    result.add_argument("--stiffness", type=float, help="of the linear law [pressure/length]; default 50 E")
+    result.add_argument("--law", choices=LAWS, default="linear", help="pressure-overclosure law")
+    stiffness = "of the linear law [pressure/length]" + told("stiffness")
+    result.add_argument("--stiffness", type=float, help=stiffness)
     result.add_argument(
-        "--table", type=table, default=table("0:0,2000:0.0005,8000:0.001"), help="p1:h1,p2:h2,... of the tabular law"
+        "--table", type=table, default="0:0,2000:0.0005,8000:0.001", help="p1:h1,p2:h2,... of the tabular law"
     )
     result.add_argument(
         "--c0", type=float, default=1e-4, help="clearance at zero pressure of the exponential law [length]"
     )
     result.add_argument("--p0", type=float, default=100.0, help="pressure at zero clearance of the exponential law")
-    result.add_argument("--young", type=float, nargs=2, metavar="E", help="moduli of the upper and the lower body")
-    result.add_argument("--poisson", type=float, default=0.3)
-    result.add_argument("--displacement", type=float, help="of NTOP, negative is down")
+    moduli = "moduli of the upper and the lower body"
+    moduli += told("moduli", lambda moduli: " ".join(f"{young:g}" for young in moduli.values()))
+    result.add_argument("--young", type=float, nargs=2, metavar="E", help=moduli)
+    result.add_argument("--poisson", type=float, default=0.3, help="Poisson's ratio of both bodies")
+    displacement = "of NTOP, negative is down" + told("displacement")
+    result.add_argument("--displacement", type=float, help=displacement)
     result.add_argument("--increments", type=int, default=0, help="fixed increments; 0: automatic, starting with one")
-    result.add_argument("--small-sliding", action="store_true", help="say so in the deck")
     result.add_argument("--field-frequency", type=int, default=1, help="fields every so many increments")
     result.add_argument("--no-fields", dest="fields", action="store_false", help="ask for the reaction total only")
     shape = result.add_argument_group("dimensions of the punch deck [length]")
-    for name in ("width", "height", "foundation-width", "foundation-height"):
-        shape.add_argument(f"--{name}", type=float)
+    for name, default in (("width", 1.0), ("height", 0.5), ("foundation-width", 3.0), ("foundation-height", 1.5)):
+        shape.add_argument(f"--{name}", type=float, help=f"(default: {default})")
     shape = result.add_argument_group("dimensions of the hertz deck [length]")
-    for name in ("radius", "thickness", "block-width", "block-height"):
-        shape.add_argument(f"--{name}", type=float)
+    defaults = {"radius": 10.0, "thickness": 0.5, "block-width": "the radius", "block-height": "0.8 of the radius"}
+    for name, default in defaults.items():
+        shape.add_argument(f"--{name}", type=float, help=f"(default: {default})")
     return result
 
 
@@ -248,7 +266,10 @@ def generate(arguments):
     if options.size < 2 or options.increments < 0:
         parser().error("size must be at least 2 and increments not negative")
     options.dimensions = {name: getattr(options, name) for name in shared[options.kind]}
-    return write(options.deck, options.kind, options.size, options)
+    try:
+        return write(options.deck, options.kind, options.size, options)
+    except OSError as error:
+        parser().error(f"cannot write {options.deck}: {error.strerror}")
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ DECK = Path(__file__).resolve().parent / "two_blocks.inp"
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--endpoint", default="tcp/127.0.0.1:7447")
+    parser.add_argument("--endpoint", default="tcp/127.0.0.1:7447", help="of the daemon [%(default)s]")
     options = parser.parse_args()
     with overclosure.connect(options.endpoint) as client, client.open(DECK) as session:
         before = session.checkpoint()

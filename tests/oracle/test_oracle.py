@@ -8,7 +8,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from oracle import fe
+import generate_deck
+import support
+from oracle import fe, totals
 from oracle.comparison import compare
 from oracle.decks import random_deck
 from oracle.enumeration import hard, linear, solve, tabular
@@ -96,3 +98,14 @@ def test_enumeration_solves_one_spring_through_each_law():
     for force, law in cases.items():
         assert solve(compliance, free, area, [law])[0] == pytest.approx(force, rel=1e-14)
     assert solve(compliance, -free, area, [hard()])[0] == 0.0
+
+
+@pytest.mark.parametrize("dialect", ["abaqus", "calculix"])
+@pytest.mark.parametrize(("kind", "size"), [("punch", 6), ("hertz", 24)])
+def test_totals_of_generated_decks_agree_with_the_oracle(tmp_path, kind, size, dialect):
+    """The solver shall find the total forces of punch and Hertz decks, to 1e-9."""
+    deck = tmp_path / f"{kind}.inp"
+    generate_deck.generate([kind, size, deck, "--no-fields"])
+    found = support.run(deck, tmp_path, "--dialect", dialect).last("history")[0]
+    reaction = float(found[f"RF{generate_deck.PROBLEMS[kind].direction}[NTOP]"])
+    assert reaction == pytest.approx(totals.total(kind, size, full=dialect == "calculix"), rel=TOLERANCE)

@@ -7,7 +7,8 @@ import pytest
 import generate_deck
 import support
 
-# Reaction of NTOP by an independent prototype of the same method: node-to-surface, exact bilinear law.
+# Reaction of NTOP by another program of the same method, node-to-surface contact with the exact bilinear law;
+# tests/oracle/totals.py computes them again.
 CALCULIX = {
     ("hertz", 24): -359.631,
     ("hertz", 54): -355.635,
