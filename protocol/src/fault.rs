@@ -94,9 +94,11 @@ impl Fault {
     }
 }
 
+/// Code and message, then the findings, one line each.
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.code, self.message)
+        write!(f, "{}: {}", self.code, self.message)?;
+        self.details.findings.iter().try_for_each(|finding| write!(f, "\n{finding}"))
     }
 }
 

@@ -76,6 +76,7 @@ fn each_sample(check: &mut dyn Check) {
             law_points: 1_000_000,
             replies_kept: 16,
             threads: 8,
+            idle_seconds: 3600.0,
         },
     });
     check.message(&Health {
@@ -96,6 +97,7 @@ fn each_sample(check: &mut dyn Check) {
             waiting: 2,
             sequence_next: 129,
             time: 0.75,
+            idle_seconds: 0.125,
         }],
     });
     check.message(&SchemaReply {

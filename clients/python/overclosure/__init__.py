@@ -1,7 +1,7 @@
 """Client of the overclosure contact mechanics daemon."""
 
 from ._client import Client, connect
-from ._errors import Fault, OverclosureError, Timeout, TransportError, Unavailable
+from ._errors import Fault, IncludeError, OverclosureError, Timeout, TransportError, Unavailable
 from ._messages import Counts, Finding, Health, Info, Limits, Load, Port, Report, SessionSummary, StepSummary
 from ._postcard import DecodeError
 from ._session import Field, Frame, Frames, Session, Step
@@ -17,6 +17,7 @@ __all__ = [
     "Frame",
     "Frames",
     "Health",
+    "IncludeError",
     "Info",
     "LawCurve",
     "Limits",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -40,9 +41,18 @@ def open_session(endpoint: str, timeout: float) -> zenoh.Session:
     try:
         for key, value in settings.items():
             config.insert_json5(key, value)
-        return zenoh.open(config)
     except zenoh.ZError as error:
-        raise Unavailable(f"cannot connect to {endpoint}: {error}") from error
+        raise TransportError(f"{endpoint!r} is not a locator such as tcp/127.0.0.1:7447: {plain(error)}") from error
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError:
+        # zenoh says no more than that, with places in its source code.
+        raise Unavailable(f"no daemon answers at {endpoint}; start one with `overclosure serve`") from None
+
+
+def plain(error: zenoh.ZError) -> str:
+    """Return what zenoh says, without the places in its source code that it adds."""
+    return re.sub(r" at /[^ ]*?\.rs:\d+\.", "", str(error))
 
 
 def call(session: zenoh.Session, key: str, reply: type[T], schema: str, payload: bytes | None, patience: Patience) -> T:
@@ -76,7 +86,7 @@ def _once(session: zenoh.Session, key: str, reply: type[T], schema: str, payload
         )
         answer = next(iter(replies), None)
     except zenoh.ZError as error:
-        raise TransportError(f"{key}: {error}") from error
+        raise TransportError(f"{key}: {plain(error)}") from error
     if answer is None:
         raise Unavailable(f"no daemon answers at {key}")
     if answer.ok is not None:

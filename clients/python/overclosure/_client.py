@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._call import Patience, call, open_session
+from ._deck import read_deck
 from ._errors import Fault
 from ._messages import (
     FaultDetails,
@@ -43,7 +44,7 @@ def connect(
     endpoint: str = DEFAULT_ENDPOINT,
     *,
     daemon: str | None = None,
-    timeout_connect: float = 5.0,
+    timeout_connect: float = 2.0,
     timeout: float = 10.0,
     timeout_work: float = 3600.0,
     attempts: int = 5,
@@ -143,8 +144,13 @@ class Client:
     ) -> Session:
         """Open a session: the daemon reads the deck, prepares it and runs every step but the last.
 
+        A session that gets no request for ``info().limits.idle_seconds`` is closed by the daemon; any request, such as
+        :meth:`Session.get`, keeps it alive.
+
         Args:
-            deck: a path, or the text of a deck (recognised by its line breaks).
+            deck: a path, or the text of a deck (recognised by its line breaks). Files that a deck at a path includes
+                are put in their places, relative to the including file, and lines of findings count that text. A text
+                has no folder: ``*INCLUDE`` in it is refused.
             label: name for people; the file name unless given.
             dialect: ``abaqus`` or ``calculix``.
             path: solver path, ``auto``, ``dense`` or ``sparse``.
@@ -155,13 +161,13 @@ class Client:
         Raises:
             Fault: ``deck_refused`` with every diagnostic in ``findings``, ``preload_stopped``, ...
             OSError: the file cannot be read.
+            IncludeError: a file that it includes cannot be put in.
 
         """
         if isinstance(deck, str) and ("\n" in deck or "\r" in deck or not deck.strip()):
             text, name = deck, ""
         else:
-            # Comments in old encodings do no harm; the reader complains about anything else.
-            text, name = Path(deck).read_bytes().decode("utf-8", "replace"), Path(deck).name
+            text, name = read_deck(Path(deck)), Path(deck).name
         request = OpenRequest(
             token=uuid.uuid4().hex,
             label=name if label is None else label,

@@ -24,6 +24,10 @@ class TransportError(OverclosureError):
     """The connection failed, or bytes came that are no reply of ours."""
 
 
+class IncludeError(OverclosureError):
+    """A file that a deck includes cannot be put in its place."""
+
+
 class Fault(OverclosureError):
     """The daemon refused.
 

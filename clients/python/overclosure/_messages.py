@@ -103,13 +103,14 @@ class Limits:
     law_points: U32
     replies_kept: U32
     threads: U32
+    idle_seconds: F64
 
 
 @dataclass
 class Info:
     """Who answers, in which version, with which limits."""
 
-    SCHEMA: ClassVar = Schema("Info")
+    SCHEMA: ClassVar = Schema("Info", 2)
     daemon: String
     product: String
     version: String
@@ -141,13 +142,14 @@ class SessionSummary:
     waiting: U32
     sequence_next: U64
     time: F64
+    idle_seconds: F64
 
 
 @dataclass
 class Load:
     """How busy a daemon is."""
 
-    SCHEMA: ClassVar = Schema("Load")
+    SCHEMA: ClassVar = Schema("Load", 2)
     sessions_free: U32
     steps: U64
     increments: U64

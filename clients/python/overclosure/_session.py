@@ -198,7 +198,9 @@ class Session:
         take up the present state with :meth:`synchronize`.
 
         Args:
-            time: total time to reach; the present time applies inputs without advancing.
+            time: total time to reach; the present time applies inputs without advancing. Beyond :attr:`time_end` the
+                deck has ended: inputs that it drives hold the values of that time, inputs that were set their last
+                ones, and nothing is said.
             inputs: actual values at that time, by name, or one for each input in port order.
             frames: fields to publish at the end of each increment.
 

@@ -4,6 +4,7 @@ import json
 import math
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -86,6 +87,9 @@ def test_a_bad_deck_is_an_exception_with_every_finding(client, text):
         client.open(text)
     assert caught.value.code == "deck_refused"
     assert any(f.severity == "error" and f.message for f in caught.value.findings)
+    lines = str(caught.value).splitlines()
+    assert len(lines) == 1 + len(caught.value.findings)
+    assert all(str(caught.value).count(f.message) == 1 for f in caught.value.findings)
 
 
 @pytest.mark.parametrize(
@@ -118,6 +122,13 @@ def test_two_clients_of_one_session_learn_the_sequence(client, deck):
         assert caught.value.code == "sequence_conflict" and caught.value.sequence_expected == 2
         first.synchronize()
         assert first.time == 0.25 and first.step(0.5).time == 0.5
+
+
+def test_how_long_a_session_is_idle_is_told(client, deck):
+    assert client.info().limits.idle_seconds == 3600.0
+    with client.open(deck):
+        time.sleep(0.05)
+        assert 0.04 <= client.load().sessions[0].idle_seconds < 60
 
 
 def test_frames_arrive_and_end_with_the_session(client, deck):
@@ -153,8 +164,16 @@ def test_a_program_that_forgets_to_close_still_ends(endpoint, deck):
 
 
 def test_nobody_there_is_said_soon():
-    with pytest.raises(overclosure.Unavailable):
+    with pytest.raises(overclosure.Unavailable) as caught:
         overclosure.connect("tcp/127.0.0.1:1", timeout_connect=0.3, attempts=1)
+    text = str(caught.value)
+    assert text.startswith("no daemon answers at tcp/127.0.0.1:1; start one with `overclosure serve`"), text
+    assert ".rs" not in text and "/root" not in text, text
+
+
+def test_what_is_no_locator_is_said():
+    with pytest.raises(overclosure.OverclosureError, match="nonsense"):
+        overclosure.connect("nonsense", timeout_connect=0.3, attempts=1)
 
 
 def test_a_tool_that_states_nothing_gets_readable_json(endpoint):

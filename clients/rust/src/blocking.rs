@@ -62,6 +62,11 @@ impl Client {
         Ok(Session { runtime: self.runtime.clone(), inner })
     }
 
+    /// See [`crate::Client::close_session`].
+    pub fn close_session(&self, session: &str) -> Result<CloseReply, CallError> {
+        self.runtime.block_on(self.inner.close_session(session))
+    }
+
     /// See [`crate::Client::disconnect`].
     pub fn disconnect(self) -> Result<(), CallError> {
         self.runtime.block_on(self.inner.disconnect())

@@ -7,7 +7,7 @@ use overclosure_protocol::DEFAULT_ENDPOINT;
 use overclosure_protocol::fault::{Fault, FaultCode};
 use overclosure_protocol::key::{self, DaemonVerb, SessionVerb};
 use overclosure_protocol::message::{
-    GetReply, Health, Info, LawReply, LawRequest, Load, Message, OpenReply, OpenRequest, Ports,
+    CloseReply, GetReply, Health, Info, LawReply, LawRequest, Load, Message, OpenReply, OpenRequest, Ports,
 };
 
 use crate::call::{Patience, REPLY_BYTES_MAX, Request, call};
@@ -21,7 +21,7 @@ pub struct Options {
     pub endpoint: String,
     /// Its id; the one that answers unless given.
     pub daemon: Option<String>,
-    /// How long to keep trying to connect; 5 s unless given.
+    /// How long to keep trying to connect; 2 s unless given.
     pub timeout_connect: Duration,
     /// How long to wait for verbs that do no solving; 10 s unless given.
     pub timeout: Duration,
@@ -36,7 +36,7 @@ impl Default for Options {
         Self {
             endpoint: DEFAULT_ENDPOINT.to_owned(),
             daemon: None,
-            timeout_connect: Duration::from_secs(5),
+            timeout_connect: Duration::from_secs(2),
             timeout: Duration::from_secs(10),
             timeout_work: Duration::from_secs(3600),
             attempts: 5,
@@ -64,7 +64,7 @@ impl Client {
         let config = zenoh_config(&side, REPLY_BYTES_MAX as u64).map_err(CallError::transport)?;
         let zenoh = zenoh::open(config)
             .await
-            .map_err(|e| CallError::transport(format!("cannot connect to {}: {}", options.endpoint, zenoh_text(&e))))?;
+            .map_err(|e| CallError::NotReached { endpoint: options.endpoint.clone(), detail: zenoh_text(&e) })?;
         let request = Request::bare(key::daemon(options.daemon.as_deref().unwrap_or("*"), DaemonVerb::Info));
         let patience = Patience { timeout: options.timeout, attempts: options.attempts };
         let info = call(&zenoh, &request, patience).await?;
@@ -119,6 +119,14 @@ impl Client {
             outputs: values.outputs.iter().map(|v| v.value).collect(),
         };
         Ok(Session::new(self.clone(), reply))
+    }
+
+    /// Ends a session by its id.
+    pub async fn close_session(&self, session: &str) -> Result<CloseReply, CallError> {
+        if let Err(error) = key::check_id(session) {
+            return Err(Fault::new(FaultCode::UnknownSession, error.to_string()).into());
+        }
+        self.ask_session(session, SessionVerb::Close, self.work()).await
     }
 
     /// Closes the connection; sessions stay open in the daemon.

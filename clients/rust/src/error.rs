@@ -5,6 +5,14 @@ use overclosure_protocol::fault::Fault;
 /// Why a call failed, after the attempts that [`crate::Options`] allows.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CallError {
+    /// No connection could be made within [`crate::Options::timeout_connect`].
+    #[error("no daemon answers at {endpoint}; start one with `overclosure serve`")]
+    NotReached {
+        /// Where it should listen.
+        endpoint: String,
+        /// What the transport says, seldom more than that it tried.
+        detail: String,
+    },
     /// Nobody answers at that key: the daemon is not running, has another id, or is being reconnected to.
     #[error("no daemon answers at {key}")]
     Unavailable {
@@ -38,7 +46,7 @@ impl CallError {
     /// Whether repeating the same call may help.
     pub fn retryable(&self) -> bool {
         match self {
-            Self::Unavailable { .. } | Self::Timeout { .. } => true,
+            Self::NotReached { .. } | Self::Unavailable { .. } | Self::Timeout { .. } => true,
             Self::Fault(fault) => fault.retryable,
             Self::Transport { .. } => false,
         }

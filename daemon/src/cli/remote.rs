@@ -1,13 +1,13 @@
 //! Client verbs against a daemon: `sessions`, `step`, `get`, `watch`.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::{Args, Subcommand};
 use overclosure_client::blocking::{Client, Session};
 use overclosure_client::{
     CallError, Dialect, FaultCode, Frame, InputValue, OpenRequest, Options, SolverPath, StepRequest, StepStatus,
 };
+use overclosure_packer::inline;
 use overclosure_protocol::DEFAULT_ENDPOINT;
 
 use super::open::read_ports;
@@ -42,8 +42,8 @@ pub struct ConnectArgs {
 pub struct SessionsArgs {
     #[command(flatten)]
     connect: ConnectArgs,
-    /// Opens a session of this deck and prints its id.
-    #[arg(long, value_name = "DECK", conflicts_with = "close")]
+    /// Opens a session of this deck, with the files that it includes, and prints its id.
+    #[arg(long, value_name = "DECK", conflicts_with_all = ["close", "close_all"])]
     open: Option<PathBuf>,
     /// What keywords mean where codes disagree, for --open.
     #[arg(long, requires = "open")]
@@ -54,9 +54,12 @@ pub struct SessionsArgs {
     /// Names and units of ports, for --open [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
     #[arg(long, requires = "open", value_name = "FILE")]
     ports: Option<PathBuf>,
-    /// Ends this session.
-    #[arg(long, value_name = "SESSION")]
-    close: Option<String>,
+    /// Ends these sessions.
+    #[arg(long, value_name = "SESSION", num_args = 1.., conflicts_with = "close_all")]
+    close: Vec<String>,
+    /// Ends all sessions of the daemon.
+    #[arg(long)]
+    close_all: bool,
 }
 
 /// Arguments of `overclosure step`.
@@ -72,6 +75,9 @@ pub struct StepArgs {
     /// Actual value of an input at that time. May be repeated.
     #[arg(long = "set", value_name = "PORT=VALUE")]
     inputs: Vec<String>,
+    /// Fields to publish at each increment for `watch --field`: CPRESS, U, ...; several with commas. The outputs always are.
+    #[arg(long, value_name = "FIELD", value_delimiter = ',')]
+    frames: Vec<String>,
 }
 
 /// Arguments of `overclosure get`.
@@ -95,7 +101,7 @@ pub struct WatchArgs {
     connect: ConnectArgs,
     /// Id of the session.
     session: String,
-    /// A field instead of the outputs; published for steps that ask for it.
+    /// A field instead of the outputs; published for steps that ask for it with --frames.
     #[arg(long)]
     field: Option<String>,
     /// Ends after so many frames.
@@ -139,12 +145,6 @@ pub fn run(command: RemoteCommand) -> Exit {
 fn report(error: &CallError) -> Exit {
     complain(&format!("error: {error}"));
     let CallError::Fault(fault) = error else { return Exit::OurFailure };
-    for f in &fault.details.findings {
-        let place = if f.line > 0 { format!("line {}: ", f.line) } else { String::new() };
-        let keyword = if f.keyword.is_empty() { String::new() } else { format!("{}: ", f.keyword) };
-        let remedy = if f.remedy.is_empty() { String::new() } else { format!("; {}", f.remedy) };
-        complain(&format!("{place}{}: {keyword}{}{remedy}", f.severity, f.message));
-    }
     match fault.code {
         FaultCode::BadRequest
         | FaultCode::TooLarge
@@ -172,13 +172,8 @@ fn report(error: &CallError) -> Exit {
 }
 
 fn connect(arguments: &ConnectArgs) -> Result<Client, CallError> {
-    let options = Options {
-        endpoint: arguments.connect.clone(),
-        daemon: arguments.daemon.clone(),
-        // A person waits: say soon that nobody is there.
-        timeout_connect: Duration::from_secs(2),
-        ..Options::default()
-    };
+    let options =
+        Options { endpoint: arguments.connect.clone(), daemon: arguments.daemon.clone(), ..Options::default() };
     Client::connect(options)
 }
 
@@ -187,30 +182,47 @@ fn sessions(arguments: SessionsArgs) -> Result<Exit, Failure> {
         return open(path, &arguments);
     }
     let client = connect(&arguments.connect)?;
-    if let Some(session) = &arguments.close {
-        client.attach(session)?.close()?;
-        return Ok(Exit::Done);
+    if !arguments.close.is_empty() {
+        return Ok(close(&client, &arguments.close));
     }
     let load = client.load()?;
-    let mut text =
-        format!("{:<12} {:>10} {:>8} {:>8} {:>24}  {}\n", "session", "sequence", "working", "waiting", "time", "label");
+    if arguments.close_all {
+        let ids: Vec<String> = load.sessions.into_iter().map(|s| s.session).collect();
+        return Ok(close(&client, &ids));
+    }
+    let mut text = format!(
+        "{:<12} {:>10} {:>8} {:>8} {:>10} {:>24}  {}\n",
+        "session", "sequence", "working", "waiting", "idle [s]", "time", "label"
+    );
     for s in &load.sessions {
         let working = if s.working { "yes" } else { "no" };
         text += &format!(
-            "{:<12} {:>10} {working:>8} {:>8} {:>24}  {}\n",
-            s.session, s.sequence_next, s.waiting, s.time, s.label
+            "{:<12} {:>10} {working:>8} {:>8} {:>10.1} {:>24}  {}\n",
+            s.session, s.sequence_next, s.waiting, s.idle_seconds, s.time, s.label
         );
     }
     text += &format!("{} open, {} free, {} models in memory\n", load.sessions.len(), load.sessions_free, load.models);
+    let idle_max = client.info().limits.idle_seconds;
+    if idle_max > 0.0 {
+        text += &format!("a session without a request for {idle_max} s is closed\n");
+    }
     print(&text)?;
     Ok(Exit::Done)
 }
 
+/// Ends each session that can be ended, and complains about the others.
+fn close(client: &Client, sessions: &[String]) -> Exit {
+    let failures = sessions.iter().filter_map(|session| client.close_session(session).err());
+    // The last one decides, unless an earlier one was ours.
+    failures.map(|error| report(&error)).fold(Exit::Done, |all, one| if all == Exit::OurFailure { all } else { one })
+}
+
 fn open(path: &std::path::Path, arguments: &SessionsArgs) -> Result<Exit, Failure> {
-    let bytes = match std::fs::read(path) {
-        Ok(bytes) => bytes,
+    // The text goes over a wire, where it has no folder.
+    let deck = match inline::inline(path) {
+        Ok(deck) => deck,
         Err(error) => {
-            complain(&format!("error: cannot read {}: {error}", path.display()));
+            complain(&format!("error: {error}"));
             return Ok(Exit::InputWrong);
         }
     };
@@ -227,14 +239,13 @@ fn open(path: &std::path::Path, arguments: &SessionsArgs) -> Result<Exit, Failur
             Some(PathArg::Dense) => SolverPath::Dense,
             Some(PathArg::Sparse) => SolverPath::Sparse,
         },
-        // Comments in old encodings do no harm; the reader complains about anything else.
-        deck: String::from_utf8_lossy(&bytes).into_owned(),
+        deck,
         ..OpenRequest::default()
     };
     let client = connect(&arguments.connect)?;
     let session = client.open(request)?;
     for warning in &session.opened().warnings {
-        complain(&format!("line {}: {}: {}", warning.line, warning.severity, warning.message));
+        complain(&warning.to_string());
     }
     print(&format!("{}\n", session.id()))?;
     Ok(Exit::Done)
@@ -254,7 +265,12 @@ fn step(arguments: &StepArgs) -> Result<Exit, Failure> {
     }
     let client = connect(&arguments.connect)?;
     let mut session = client.attach(&arguments.session)?;
-    let reply = session.step(StepRequest { time: arguments.time, inputs, ..StepRequest::default() })?;
+    let reply = session.step(StepRequest {
+        time: arguments.time,
+        inputs,
+        frames: arguments.frames.clone(),
+        ..StepRequest::default()
+    })?;
     let counts = &reply.counts;
     let mut text = format!(
         "time {}\nincrements {}\nsevere_discontinuity_iterations {}\nequilibrium_iterations {}\ncutbacks {}\n",

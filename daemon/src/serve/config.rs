@@ -1,12 +1,16 @@
 //! Configuration of the daemon: a TOML file, overridden by the command line, validated as a whole.
 
 use std::path::Path;
+use std::time::Duration;
 
 use overclosure_client::network::check_locator;
 use overclosure_protocol::DEFAULT_ENDPOINT;
 use overclosure_protocol::key::check_id;
 use overclosure_protocol::message::Limits;
 use serde::Deserialize;
+
+/// A year.
+const IDLE_SECONDS_MAX: f64 = 31_536_000.0;
 
 /// What a configuration file may say. Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
@@ -41,6 +45,9 @@ pub struct LimitsConfig {
     pub replies_kept: u32,
     /// Threads that one session may ask for. Default: those of the machine; range 1 to 1024.
     pub threads: u32,
+    /// Seconds without a request after which a session is closed; 0: never. Default 3600, otherwise 0.1 to 31 536 000
+    /// (a year).
+    pub idle_seconds: f64,
 }
 
 /// `[shutdown]`.
@@ -73,6 +80,7 @@ impl Default for LimitsConfig {
             law_points: 1_000_000,
             replies_kept: 16,
             threads: u32::try_from(threads).unwrap_or(1).min(1024),
+            idle_seconds: 3600.0,
         }
     }
 }
@@ -134,6 +142,12 @@ impl Config {
         range("law_points", limits.law_points.into(), 1, 10_000_000);
         range("replies_kept", limits.replies_kept.into(), 1, 1024);
         range("threads", limits.threads.into(), 1, 1024);
+        if limits.idle_seconds != 0.0 && !(0.1..=IDLE_SECONDS_MAX).contains(&limits.idle_seconds) {
+            findings.push(format!(
+                "limits.idle_seconds = {}: must be 0 (never) or lie between 0.1 and {IDLE_SECONDS_MAX}",
+                limits.idle_seconds
+            ));
+        }
         if !(0.0..=3600.0).contains(&self.shutdown.drain_seconds) {
             findings
                 .push(format!("shutdown.drain_seconds = {}: must lie between 0 and 3600", self.shutdown.drain_seconds));
@@ -158,8 +172,31 @@ impl Config {
 impl LimitsConfig {
     /// As clients see them.
     pub fn to_message(&self) -> Limits {
-        let Self { sessions, queue, message_bytes, increments_per_request, law_points, replies_kept, threads } = *self;
-        Limits { sessions, queue, message_bytes, increments_per_request, law_points, replies_kept, threads }
+        let Self {
+            sessions,
+            queue,
+            message_bytes,
+            increments_per_request,
+            law_points,
+            replies_kept,
+            threads,
+            idle_seconds,
+        } = *self;
+        Limits {
+            sessions,
+            queue,
+            message_bytes,
+            increments_per_request,
+            law_points,
+            replies_kept,
+            threads,
+            idle_seconds,
+        }
+    }
+
+    /// How long a session may go without a request; `None`: for ever.
+    pub fn idle_max(&self) -> Option<Duration> {
+        (self.idle_seconds > 0.0).then(|| Duration::from_secs_f64(self.idle_seconds))
     }
 }
 
@@ -177,11 +214,23 @@ mod tests {
 
     #[test]
     fn all_findings_come_at_once() {
-        let text = "listen = [\"nowhere\"]\ndaemon = \"a/b\"\n[limits]\nqueue = 0\nmessage_bytes = 1\n[shutdown]\ndrain_seconds = -1.0";
+        let text = "listen = [\"nowhere\"]\ndaemon = \"a/b\"\n[limits]\nqueue = 0\nmessage_bytes = 1\nidle_seconds = nan\n[shutdown]\ndrain_seconds = -1.0";
         let config: Config = toml::from_str(text).expect("well-formed");
         match config.validate() {
-            Err(ConfigError::Values { findings }) => assert_eq!(findings.len(), 5, "{findings:?}"),
+            Err(ConfigError::Values { findings }) => assert_eq!(findings.len(), 6, "{findings:?}"),
             other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn an_idle_limit_of_zero_means_never() {
+        let limits = |text: &str| toml::from_str::<Config>(text).expect("well-formed");
+        assert_eq!(limits("").limits.idle_max(), Some(Duration::from_secs(3600)));
+        let never = limits("[limits]\nidle_seconds = 0.0");
+        assert!(never.validate().is_ok());
+        assert_eq!(never.limits.idle_max(), None);
+        for bad in ["-1.0", "0.01", "inf", "1e9"] {
+            assert!(limits(&format!("[limits]\nidle_seconds = {bad}")).validate().is_err(), "{bad}");
         }
     }
 

@@ -36,12 +36,11 @@ pub fn finding(diagnostic: &Diagnostic) -> Finding {
     Finding { severity, line: *line, keyword: keyword.clone(), message: message.clone(), remedy: remedy.clone() }
 }
 
-/// A refused deck, with every diagnostic.
+/// A refused deck, with every diagnostic: in the details alone, which every client shows after the message.
 pub fn deck_refused(diagnostics: &[Diagnostic]) -> Fault {
     let errors = diagnostics.iter().filter(|d| d.is_error()).count();
-    let first = diagnostics.iter().find(|d| d.is_error()).map_or_else(String::new, |d| format!("; the first: {d}"));
     let plural = if errors == 1 { "" } else { "s" };
-    let mut fault = Fault::new(FaultCode::DeckRefused, format!("the deck has {errors} error{plural}{first}"));
+    let mut fault = Fault::new(FaultCode::DeckRefused, format!("the deck has {errors} error{plural}"));
     fault.details.findings = diagnostics.iter().map(finding).collect();
     fault
 }

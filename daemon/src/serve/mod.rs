@@ -50,6 +50,7 @@ Configuration file, with the defaults:
   law_points = 1000000
   replies_kept = 16                 # per session, for repeated requests
   threads = 2                       # that one session may ask for; those of the machine unless given
+  idle_seconds = 3600.0             # a session without a request for so long is closed; 0: never
   [shutdown]
   drain_seconds = 10.0
 
@@ -102,6 +103,8 @@ struct Shared {
     increments: Arc<AtomicU64>,
     steps: Arc<AtomicU64>,
     sessions_failed: AtomicU64,
+    /// Timers for session threads.
+    runtime: tokio::runtime::Handle,
 }
 
 /// Runs the verb.
@@ -171,6 +174,7 @@ async fn serve(config: Config) -> Result<(), ServeError> {
         increments: Arc::default(),
         steps: Arc::default(),
         sessions_failed: AtomicU64::new(0),
+        runtime: tokio::runtime::Handle::current(),
         config,
     });
     desk_threads.spawn(&shared)?;
@@ -185,8 +189,7 @@ async fn serve(config: Config) -> Result<(), ServeError> {
     let token = session.liveliness().declare_token(&key).await.map_err(|source| ServeError::Declare { key, source })?;
 
     let bound = bound(&session).await;
-    tracing::info!(daemon = %shared.id, %bound, "ready");
-    // Nobody has to read it.
+    // Nobody has to read it. The log does not say it again.
     let _ =
         print(&format!("overclosure {} ready: daemon {} listens on {bound}\n", env!("CARGO_PKG_VERSION"), shared.id));
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use overclosure_protocol::fault::{Fault, FaultCode};
 use overclosure_protocol::key::SessionVerb;
@@ -38,13 +39,28 @@ pub struct Refused {
 }
 
 /// What others may know about a session without asking its thread.
-#[derive(Default)]
 pub struct Status {
     /// Set to stop a running advance before its next increment.
     pub cancelled: AtomicBool,
     working: AtomicBool,
     sequence_next: AtomicU64,
     time_bits: AtomicU64,
+    opened: Instant,
+    /// Milliseconds from `opened` to the end of the last request.
+    answered_ms: AtomicU64,
+}
+
+impl Default for Status {
+    fn default() -> Self {
+        Self {
+            cancelled: AtomicBool::new(false),
+            working: AtomicBool::new(false),
+            sequence_next: AtomicU64::new(0),
+            time_bits: AtomicU64::new(0),
+            opened: Instant::now(),
+            answered_ms: AtomicU64::new(0),
+        }
+    }
 }
 
 impl Status {
@@ -53,11 +69,24 @@ impl Status {
         self.working.store(working, Ordering::Relaxed);
         self.sequence_next.store(sequence_next, Ordering::Relaxed);
         self.time_bits.store(time.to_bits(), Ordering::Relaxed);
+        self.answered_ms.store(self.age_ms(), Ordering::Relaxed);
     }
 
     /// Marks the begin of work on a request.
     pub fn begin(&self) {
         self.working.store(true, Ordering::Relaxed);
+    }
+
+    /// How long nothing has been asked of the session.
+    pub fn idle(&self) -> Duration {
+        if self.working.load(Ordering::Relaxed) {
+            return Duration::ZERO;
+        }
+        Duration::from_millis(self.age_ms().saturating_sub(self.answered_ms.load(Ordering::Relaxed)))
+    }
+
+    fn age_ms(&self) -> u64 {
+        u64::try_from(self.opened.elapsed().as_millis()).unwrap_or(u64::MAX)
     }
 }
 
@@ -165,6 +194,18 @@ impl Registry {
         self.lock().open.remove(&number);
     }
 
+    /// Forgets a session unless a request waits for it. Requests are put into queues under the same lock, so none is lost.
+    pub fn remove_idle(&self, number: u64) -> bool {
+        let mut sessions = self.lock();
+        match sessions.open.get(&number) {
+            Some(entry) if entry.queue.capacity() < entry.queue.max_capacity() => false,
+            _ => {
+                sessions.open.remove(&number);
+                true
+            }
+        }
+    }
+
     /// Refuses everything new, stops running advances at their next increment, and lets the threads end when their queues are
     /// empty.
     pub fn drain(&self) {
@@ -196,6 +237,7 @@ impl Registry {
             waiting: u32::try_from(entry.queue.max_capacity() - entry.queue.capacity()).unwrap_or(u32::MAX),
             sequence_next: entry.status.sequence_next.load(Ordering::Relaxed),
             time: f64::from_bits(entry.status.time_bits.load(Ordering::Relaxed)),
+            idle_seconds: entry.status.idle().as_secs_f64(),
         };
         sessions.open.iter().map(summary).collect()
     }
@@ -210,7 +252,9 @@ impl Registry {
 pub fn unknown_session(session: &str) -> Fault {
     Fault::new(
         FaultCode::UnknownSession,
-        format!("no session {session:?} is open here; it was never opened, or it ended"),
+        format!(
+            "no session {session:?} is open here; it was never opened, or it ended: closed, lost, or idle for too long"
+        ),
     )
 }
 
@@ -267,6 +311,20 @@ mod tests {
         let _first = registered(open(&registry, "t"));
         assert!(matches!(open(&registry, "t"), Ok(Opening::Forwarded)));
         assert_eq!(registry.summaries().len(), 1);
+    }
+
+    #[test]
+    fn an_idle_session_is_forgotten_and_one_at_work_is_not_idle() {
+        let registry = Registry::new("ab".into(), 2, 4);
+        let session = registered(open(&registry, ""));
+        assert_eq!(session.status.idle(), Duration::ZERO, "still being opened");
+        session.status.update(false, 1, 0.0);
+        std::thread::sleep(Duration::from_millis(5));
+        assert!(registry.summaries()[0].idle_seconds > 0.0);
+        session.status.begin();
+        assert_eq!(registry.summaries()[0].idle_seconds, 0.0);
+        assert!(registry.remove_idle(session.number));
+        assert!(registry.summaries().is_empty());
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 use overclosure_protocol::arguments;
 use overclosure_protocol::fault::{Fault, FaultCode};
 use overclosure_protocol::key::SessionVerb;
-use overclosure_protocol::message::OpenRequest;
+use overclosure_protocol::message::{OpenRequest, Severity};
 
 use super::Shared;
 use super::convert;
@@ -62,7 +62,9 @@ fn open(shared: &Arc<Shared>, call: Call) {
             serve(shared, work, registered);
         }
         Err(fault) => {
-            tracing::info!(code = %fault.code, message = %fault.message, "not opened");
+            let finding = fault.details.findings.iter().find(|f| f.severity == Severity::Error);
+            let finding = finding.map(tracing::field::display);
+            tracing::info!(code = %fault.code, message = %fault.message, finding, "not opened");
             shared.registry.remove(registered.number);
             call.fail(&fault);
             drain(registered, &fault);
@@ -115,10 +117,10 @@ fn check_request(request: &OpenRequest, threads_max: u32) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Works on the queue until the session is closed, lost to a panic, or the daemon drains.
+/// Works on the queue until the session is closed, idle for too long, lost to a panic, or the daemon drains.
 fn serve(shared: &Arc<Shared>, mut work: Work, mut registered: Registered) {
     let mut last = unknown_session(&registered.id);
-    while let Some(command) = registered.queue.blocking_recv() {
+    while let Some(command) = next(shared, &mut registered) {
         if shared.registry.draining() {
             command.into_call().fail(&shutting_down());
             continue;
@@ -129,6 +131,7 @@ fn serve(shared: &Arc<Shared>, mut work: Work, mut registered: Registered) {
             Command::Verb(SessionVerb::Close, call) => {
                 if let Err(fault) = call.no_request("close") {
                     call.fail(&fault);
+                    work.tell(false);
                     continue;
                 }
                 shared.registry.remove(registered.number);
@@ -148,6 +151,30 @@ fn serve(shared: &Arc<Shared>, mut work: Work, mut registered: Registered) {
     tracing::info!("closed");
     drain(registered, &last);
     work.end();
+}
+
+/// The next request. `None` when the session is to end: the daemon drains, or nothing was asked for too long.
+fn next(shared: &Shared, registered: &mut Registered) -> Option<Command> {
+    let Some(idle_max) = shared.config.limits.idle_max() else { return registered.queue.blocking_recv() };
+    loop {
+        // After the end of the runtime there are no timers, but then the queue has ended, too.
+        if shared.registry.draining() {
+            return registered.queue.blocking_recv();
+        }
+        let waited = shared.runtime.block_on(async { tokio::time::timeout(idle_max, registered.queue.recv()).await });
+        match waited {
+            Ok(command) => return command,
+            Err(_) if shared.registry.remove_idle(registered.number) => {
+                tracing::info!(
+                    idle_seconds = idle_max.as_secs_f64(),
+                    "no request came for limits.idle_seconds: ending the session"
+                );
+                return None;
+            }
+            // A request came at the last moment.
+            Err(_) => {}
+        }
+    }
 }
 
 /// Refuses what is still waiting.

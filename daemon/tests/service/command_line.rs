@@ -67,6 +67,8 @@ fn refusals_exit_2_and_an_absent_daemon_exits_1() {
     let refused = run(&daemon, &["sessions", "--open", path.to_str().unwrap()]);
     assert_eq!(refused.code, Some(2));
     assert!(refused.err.contains("deck_refused"), "{}", refused.err);
+    let lines: Vec<&str> = refused.err.lines().collect();
+    assert!(lines[1..].iter().all(|line| refused.err.matches(line).count() == 1), "each finding once: {lines:?}");
 
     let opened = run(&daemon, &["sessions", "--open", &deck()]);
     let session = opened.out.trim();
@@ -79,4 +81,59 @@ fn refusals_exit_2_and_an_absent_daemon_exits_1() {
     let absent = run(&gone, &["sessions"]);
     assert_eq!(absent.code, Some(1), "{}", absent.err);
     assert!(absent.err.contains(&gone.endpoint), "{}", absent.err);
+    assert!(absent.err.contains("overclosure serve") && !absent.err.contains(".rs"), "{}", absent.err);
+}
+
+#[test]
+fn several_sessions_are_closed_at_once() {
+    let daemon = Daemon::start();
+    let open = || run(&daemon, &["sessions", "--open", &deck()]).out.trim().to_owned();
+    let ids = [open(), open(), open(), open()];
+    let some = run(&daemon, &["sessions", "--close", &ids[0], "zzzz-1", &ids[1]]);
+    assert_eq!(some.code, Some(2), "one of them is unknown");
+    assert!(some.err.contains("zzzz-1"), "{}", some.err);
+    let left = run(&daemon, &["sessions"]).out;
+    assert!(left.contains("2 open") && !left.contains(&ids[0]) && !left.contains(&ids[1]), "{left}");
+    assert!(left.contains("3600 s"), "{left}");
+    assert_eq!(run(&daemon, &["sessions", "--close-all"]).code, Some(0));
+    assert!(run(&daemon, &["sessions"]).out.contains("0 open"));
+    assert_eq!(run(&daemon, &["sessions", "--close-all", "--open", &deck()]).code, Some(2));
+}
+
+#[test]
+fn fields_are_watched_when_steps_ask_for_them() {
+    let daemon = Daemon::start();
+    let opened = run(&daemon, &["sessions", "--open", &deck()]);
+    let session = opened.out.trim();
+    let mut watching = overclosure()
+        .args(["watch", session, "--field", "CPRESS", "--count", "1", "--connect", &daemon.endpoint])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(watching.stdout.take().unwrap()));
+    assert!(lines.next().unwrap().unwrap().starts_with("time,node,CPRESS"));
+    let stepped = run(&daemon, &["step", session, "--time", "0.25", "--frames", "U,CPRESS"]);
+    assert_eq!(stepped.code, Some(0), "{}", stepped.err);
+    let rows = lines.collect::<Result<Vec<_>, _>>().unwrap();
+    assert!(rows.len() == 4 && rows[0].starts_with("2.5"), "{rows:?}");
+    assert!(watching.wait().unwrap().success());
+    assert_eq!(run(&daemon, &["step", session, "--time", "0.5", "--frames", "CPRES"]).code, Some(2));
+}
+
+#[test]
+fn a_deck_is_opened_with_the_files_that_it_includes() {
+    let daemon = Daemon::start();
+    let folder = tempfile::tempdir().unwrap();
+    let whole = std::fs::read_to_string(deck()).unwrap();
+    let cut = whole.find("\n*STEP").unwrap() + 1;
+    let path = folder.path().join("deck.inp");
+    std::fs::write(&path, format!("{}*include, input=steps.inc\n", &whole[..cut])).unwrap();
+    let open = || run(&daemon, &["sessions", "--open", path.to_str().unwrap()]);
+    let missing = open();
+    assert_eq!(missing.code, Some(2));
+    assert!(missing.err.contains("steps.inc"), "{}", missing.err);
+    std::fs::write(folder.path().join("steps.inc"), &whole[cut..]).unwrap();
+    let opened = open();
+    assert_eq!(opened.code, Some(0), "{}", opened.err);
+    assert_eq!(run(&daemon, &["step", opened.out.trim(), "--time", "1"]).code, Some(0));
 }

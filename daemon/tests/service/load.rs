@@ -95,3 +95,58 @@ fn a_killed_daemon_is_unavailable_at_once() {
     }
     assert!(begin.elapsed() < Duration::from_secs(10), "long before the timeout");
 }
+
+#[test]
+fn a_session_whose_client_died_is_closed_and_one_that_is_used_or_works_is_not() {
+    let daemon = Daemon::start_with("[limits]\nidle_seconds = 0.5\nincrements_per_request = 4000000000");
+    let client = daemon.client();
+    assert_eq!(client.info().limits.idle_seconds, 0.5);
+    let open = |deck: String| client.open(OpenRequest { deck, ..Default::default() }).unwrap();
+    let (used, watched) = (open(DECK.into()), open(DECK.into()));
+    let frames = watched.frames().unwrap();
+    let abandoned = {
+        // A client that goes away without closing anything.
+        let dying = daemon.client();
+        dying.open(OpenRequest { deck: DECK.into(), ..Default::default() }).unwrap().id().to_owned()
+    };
+    let busy = open(endless_deck()).id().to_owned();
+    std::thread::scope(|scope| {
+        let endless = scope.spawn(|| {
+            daemon.raw().post(&busy, SessionVerb::Step, &StepRequest { sequence: 1, time: 1.0, ..Default::default() })
+        });
+        let begin = Instant::now();
+        let mut gone = false;
+        // Four times the limit, with a request to one of them far more often than that.
+        while begin.elapsed() < Duration::from_secs(2) || !gone {
+            assert!(begin.elapsed() < Duration::from_secs(60), "the idle sessions stay");
+            used.get(&[]).expect("a session that is used stays");
+            let load = client.load().unwrap();
+            let ids: Vec<&str> = load.sessions.iter().map(|s| s.session.as_str()).collect();
+            gone = !ids.contains(&abandoned.as_str()) && !ids.contains(&watched.id());
+            assert!(ids.contains(&busy.as_str()), "a running step is not idle");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert_eq!(frames.count(), 0, "who only watches learns of the end");
+        assert_eq!(client.load().unwrap().sessions_free, 14);
+        match watched.get(&[]) {
+            Err(CallError::Fault(fault)) => {
+                assert_eq!(fault.code, FaultCode::UnknownSession);
+                assert!(fault.message.contains("idle"), "{fault}");
+            }
+            other => panic!("{other:?}"),
+        }
+        daemon.terminate();
+        assert!(endless.join().unwrap().is_ok());
+    });
+}
+
+#[test]
+fn without_an_idle_limit_sessions_stay() {
+    let daemon = Daemon::start_with("[limits]\nidle_seconds = 0.0");
+    let client = daemon.client();
+    let session = client.open(OpenRequest { deck: DECK.into(), ..Default::default() }).unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    let load = client.load().unwrap();
+    assert!(load.sessions[0].idle_seconds >= 0.25, "{load:?}");
+    session.close().unwrap();
+}

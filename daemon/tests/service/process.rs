@@ -58,3 +58,22 @@ fn an_id_that_is_given_is_taken() {
     let daemon = Daemon::start_with("daemon = \"press-7\"");
     assert_eq!((daemon.id.as_str(), daemon.client().info().daemon.as_str()), ("press-7", "press-7"));
 }
+
+#[test]
+fn a_log_in_a_file_has_no_colours_and_ready_is_said_once() {
+    let mut child = overclosure()
+        .args(["serve", "--listen", "tcp/127.0.0.1:0"])
+        .env("OVERCLOSURE_LOG", "info")
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut out = std::io::BufReader::new(child.stdout.take().unwrap());
+    let mut ready = String::new();
+    std::io::BufRead::read_line(&mut out, &mut ready).unwrap();
+    let sent = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let log = String::from_utf8(child.wait_with_output().unwrap().stderr).unwrap();
+    assert!(ready.contains(" ready: daemon "), "{ready}");
+    assert!(log.contains("stopped") && !log.contains('\u{1b}') && !log.contains(" ready"), "{log}");
+}

@@ -11,7 +11,7 @@
 mod archive;
 mod description;
 mod documentation;
-mod inline;
+pub mod inline;
 mod library;
 mod pack;
 mod picture;

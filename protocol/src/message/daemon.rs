@@ -4,7 +4,7 @@ use super::{MessageShape, choice, message};
 
 message! {
     /// Reply to `info`: who answers, in which version, with which limits.
-    pub struct Info/1 {
+    pub struct Info/2 {
         /// Daemon id, the third chunk of its keys.
         pub daemon: String,
         /// Always `overclosure`.
@@ -26,7 +26,7 @@ message! {
 
 message! {
     /// Limits of a daemon; every one of them can be configured.
-    pub struct Limits/1 {
+    pub struct Limits/2 {
         /// Sessions open at the same time.
         pub sessions: u32,
         /// Requests that may wait for one session; one more is refused as busy.
@@ -41,6 +41,9 @@ message! {
         pub replies_kept: u32,
         /// Threads that one session may ask for.
         pub threads: u32,
+        /// Seconds without a request after which a session is closed; 0: never. A running request is not idle.
+        #[serde(with = "crate::text::number")]
+        pub idle_seconds: f64,
     }
 }
 
@@ -71,7 +74,7 @@ message! {
 
 message! {
     /// Reply to `load`: how busy the daemon is.
-    pub struct Load/1 {
+    pub struct Load/2 {
         /// Sessions that may still be opened.
         pub sessions_free: u32,
         /// Step requests accepted since the start.
@@ -87,7 +90,7 @@ message! {
 
 message! {
     /// A session as `load` lists it.
-    pub struct SessionSummary/1 {
+    pub struct SessionSummary/2 {
         /// Session id, the fifth chunk of its keys.
         pub session: String,
         /// Label given when it was opened.
@@ -101,6 +104,9 @@ message! {
         /// Total time reached \[time\].
         #[serde(with = "crate::text::number")]
         pub time: f64,
+        /// Seconds since its last request was answered; 0 while one is being worked on.
+        #[serde(with = "crate::text::number")]
+        pub idle_seconds: f64,
     }
 }
 

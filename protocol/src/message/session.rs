@@ -134,6 +134,21 @@ message! {
     }
 }
 
+/// `line 41: error: *KEYWORD: what is wrong; what to do`.
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.line > 0 {
+            write!(f, "line {}: ", self.line)?;
+        }
+        write!(f, "{}: ", self.severity)?;
+        if !self.keyword.is_empty() {
+            write!(f, "{}: ", self.keyword)?;
+        }
+        f.write_str(&self.message)?;
+        if self.remedy.is_empty() { Ok(()) } else { write!(f, "; {}", self.remedy) }
+    }
+}
+
 message! {
     /// Reply to `ports`: values are exchanged in this order.
     pub struct Ports/1 {
