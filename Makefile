@@ -2,7 +2,7 @@
 # make demo   the main job, three ways, with pictures in out/demo
 # make bench  timings against CalculiX (if installed), table in out/bench
 #
-# Needs: Rust, Python 3.10 or later with venv and pip, a C compiler.
+# Needs: Rust 1.90 or later, Python 3.11 or later with venv and pip, a C compiler.
 
 PYTHON ?= python3
 CARGO ?= cargo
