@@ -20,8 +20,8 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
     }
     mesh.node_labels = (1..=16).collect();
     for first in [0u32, 8] {
-        let nodes = std::array::from_fn(|i| NodeId(first + i as u32));
-        mesh.elements.push(Element { kind: ElementKind::C3D8, nodes });
+        let nodes: [NodeId; 8] = std::array::from_fn(|i| NodeId(first + i as u32));
+        mesh.elements.push(ElementKind::C3D8, &nodes);
     }
     mesh.element_labels = vec![1, 2];
     mesh.element_materials = vec![MaterialId(0); 2];

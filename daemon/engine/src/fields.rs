@@ -1,14 +1,14 @@
 //! Fields: displacements, reactions and stresses of the whole mesh, recovered by one solve.
 
-use crate::element::brick;
+use crate::element::{self, Coordinates};
 use crate::simulation::{ContactStatus, Field, FieldError, NodalSolution, Simulation};
-use crate::solve::assembly::corners;
+use crate::solve::assembly::coordinates;
 use crate::solve::columns::Column;
 use crate::solve::numbering::NOT_FREE;
 use crate::solve::supports;
 
-/// Stress (11, 22, 33, 12, 13, 23) at the eight integration points of an element [pressure].
-pub type ElementStress = [[f64; 6]; 8];
+/// Stress (11, 22, 33, 12, 13, 23) at the integration points of an element [pressure].
+pub type ElementStress = Vec<[f64; 6]>;
 
 /// Fields that [`Simulation::field`] knows.
 const FIELDS: &str = "U, RF, S, CPRESS, COPEN, CSTATUS, CSLIP";
@@ -78,12 +78,12 @@ impl Simulation {
     /// Stress at the integration points of one element.
     pub fn element_stress(&self, solution: &NodalSolution, element: crate::model::ElementId) -> ElementStress {
         let mesh = &self.prepared.model.mesh;
-        let nodes = mesh.elements[element.index()].nodes;
-        brick::stress(
-            mesh.elements[element.index()].kind,
-            &corners(mesh, element.0),
+        let nodes = mesh.elements.nodes(element.index());
+        element::stress(
+            mesh.elements.kind(element.index()),
+            &coordinates(mesh, element.0),
             self.prepared.elasticities[mesh.element_materials[element.index()].index()],
-            &nodes.map(|n| solution.displacement[n.index()]),
+            &Coordinates::of(nodes.iter().map(|n| solution.displacement[n.index()])),
         )
     }
 
@@ -93,9 +93,9 @@ impl Simulation {
         let mesh = &self.prepared.model.mesh;
         let mut sum = vec![[0.0; 6]; mesh.nodes.len()];
         let mut count = vec![0u32; mesh.nodes.len()];
-        for (e, element) in mesh.elements.iter().enumerate() {
+        for (e, (kind, nodes)) in mesh.elements.iter().enumerate() {
             let stress = self.element_stress(solution, crate::model::ElementId(e as u32));
-            for (node, s) in element.nodes.into_iter().zip(brick::extrapolate(&stress)) {
+            for (node, s) in nodes.iter().zip(element::extrapolate(kind, &stress)) {
                 count[node.index()] += 1;
                 for (total, value) in sum[node.index()].iter_mut().zip(s) {
                     *total += value;

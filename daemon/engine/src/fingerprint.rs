@@ -33,9 +33,9 @@ pub fn fingerprint(model: &Model) -> u64 {
     for label in mesh.node_labels.iter().chain(&mesh.element_labels) {
         hash.bytes(&label.to_le_bytes());
     }
-    for element in &mesh.elements {
-        hash.bytes(&[element.kind as u8]);
-        for n in element.nodes {
+    for (kind, nodes) in mesh.elements.iter() {
+        hash.bytes(&[kind as u8]);
+        for n in nodes {
             hash.bytes(&n.0.to_le_bytes());
         }
     }

@@ -31,3 +31,7 @@ mod solve;
 
 #[cfg(test)]
 mod column_tests;
+#[cfg(test)]
+mod patch_tests;
+#[cfg(test)]
+mod test_mesh;

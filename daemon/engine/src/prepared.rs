@@ -2,7 +2,7 @@
 
 use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
-use crate::element::brick::Elasticity;
+use crate::element::Elasticity;
 use crate::examination::{self, Examined};
 use crate::fingerprint::fingerprint;
 use crate::model::{Model, NodeId};
@@ -129,7 +129,7 @@ impl PreparedModel {
             })?,
         };
         let support_elements = (0..model.mesh.elements.len() as u32)
-            .filter(|&e| model.mesh.elements[e as usize].nodes.iter().any(|&n| supports.touches(n)))
+            .filter(|&e| model.mesh.elements.nodes(e as usize).iter().any(|&n| supports.touches(n)))
             .collect();
         let infos = points
             .iter()
@@ -225,7 +225,7 @@ fn prepare_bodies(
     let count = bodies.nodes.len();
     let points_of = |body: usize| -> Vec<u32> {
         let touches = |p: &ContactPoint| {
-            p.nodes().iter().any(|&n| {
+            p.nodes().any(|n| {
                 bodies.of_node[n.index()] == body as u32 && (0..3).any(|d| !context.supports.is_prescribed(n, d))
             })
         };

@@ -9,8 +9,9 @@ use rstar::{PointDistance, RTree};
 use rustc_hash::FxHashMap;
 
 use crate::diagnostic::Diagnostic;
-use crate::element::quad::{self, cross, dot, norm, sub};
-use crate::model::{ElementFace, Mesh, Model, NodeId, SurfaceKind};
+use crate::element::quad::{Projection, cross, dot, norm, sub};
+use crate::element::{Coordinates, face};
+use crate::model::{ElementFace, FACE_NODES_MAX, FaceNodes, Mesh, Model, NodeId, SurfaceKind};
 
 /// One node-to-surface constraint.
 #[derive(Clone, Debug)]
@@ -25,10 +26,10 @@ pub struct ContactPoint {
     pub normal: [f64; 3],
     /// Unit tangents: the projection of the 1-axis (of the 3-axis where that is normal), and normal x first tangent.
     pub tangents: [[f64; 3]; 2],
-    /// Corners of the primary face.
-    pub primary: [NodeId; 4],
-    /// Shape functions of the face at the anchor; they add up to 1.
-    pub weights: [f64; 4],
+    /// Nodes of the primary face.
+    pub primary: FaceNodes,
+    /// Shape functions of the face at the anchor; they add up to 1. Zero beyond the nodes of the face.
+    pub weights: [f64; FACE_NODES_MAX],
     /// Initial clearance along the normal [length]; negative when the bodies overlap.
     pub clearance: f64,
     /// Size of the primary face: square root of its area [length].
@@ -37,8 +38,8 @@ pub struct ContactPoint {
 
 impl ContactPoint {
     /// Nodes that the constraint couples.
-    pub fn nodes(&self) -> [NodeId; 5] {
-        [self.node, self.primary[0], self.primary[1], self.primary[2], self.primary[3]]
+    pub fn nodes(&self) -> impl Iterator<Item = NodeId> + '_ {
+        std::iter::once(self.node).chain(self.primary.iter().copied())
     }
 
     /// Entries of the row `v · (u_secondary − Σ N u_primary)`: calls `entry(node, direction, coefficient)`.
@@ -61,26 +62,34 @@ type Box3 = GeomWithData<Rectangle<[f64; 3]>, u32>;
 
 struct Primary {
     faces: Vec<ElementFace>,
-    corners: Vec<quad::QuadCorners>,
+    coordinates: Vec<Coordinates>,
     sizes: Vec<f64>,
     tree: RTree<Box3>,
 }
 
 impl Primary {
     fn new(mesh: &Mesh, faces: &[ElementFace]) -> Self {
-        let corners: Vec<_> = faces.iter().map(|&f| mesh.face_nodes(f).map(|n| mesh.nodes[n.index()])).collect();
-        let sizes = corners.iter().map(|c| quad::nodal_areas(c).iter().sum::<f64>().sqrt()).collect();
-        let boxes = corners
+        let coordinates: Vec<_> =
+            faces.iter().map(|&f| Coordinates::of(mesh.face_nodes(f).iter().map(|n| mesh.nodes[n.index()]))).collect();
+        let sizes = coordinates.iter().map(|c| face::nodal_areas(c).iter().sum::<f64>().sqrt()).collect();
+        let boxes = coordinates
             .iter()
             .zip(0u32..)
             .map(|(c, index)| {
                 let bound = |pick: fn(f64, f64) -> f64| {
                     c.iter().skip(1).fold(c[0], |b, x| std::array::from_fn(|i| pick(b[i], x[i])))
                 };
-                GeomWithData::new(Rectangle::from_corners(bound(f64::min), bound(f64::max)), index)
+                let (mut low, mut high) = (bound(f64::min), bound(f64::max));
+                // A curved face reaches out of the box of its nodes.
+                let bulge = face::bulge(c.len());
+                for (l, h) in low.iter_mut().zip(&mut high).filter(|_| bulge > 0.0) {
+                    let reach = bulge * (*h - *l);
+                    (*l, *h) = (*l - reach, *h + reach);
+                }
+                GeomWithData::new(Rectangle::from_corners(low, high), index)
             })
             .collect();
-        Self { faces: faces.to_vec(), corners, sizes, tree: RTree::bulk_load(boxes) }
+        Self { faces: faces.to_vec(), coordinates, sizes, tree: RTree::bulk_load(boxes) }
     }
 
     /// Anchor of a secondary node: the nearest face that faces it, with the normals of equally near faces averaged.
@@ -90,23 +99,23 @@ impl Primary {
         node: NodeId,
         facing: Option<[f64; 3]>,
         extension_zone: f64,
-    ) -> Option<(u32, quad::Projection)> {
+    ) -> Option<(u32, Projection)> {
         let position = mesh.nodes[node.index()];
-        let mut found: Vec<(u32, quad::Projection)> = Vec::new();
+        let mut found: Vec<(u32, Projection)> = Vec::new();
         let mut nearest = f64::INFINITY;
         for candidate in self.tree.nearest_neighbor_iter(position) {
             // A tie is decided within a hair of the face size, so that a foot on a shared edge sees both faces.
-            let face = candidate.data as usize;
-            let hair = 1e-9 * self.sizes[face];
+            let index = candidate.data as usize;
+            let hair = 1e-9 * self.sizes[index];
             if candidate.distance_2(&position).sqrt() > nearest + hair {
                 break;
             }
-            if mesh.face_nodes(self.faces[face]).contains(&node) {
+            if mesh.face_nodes(self.faces[index]).contains(&node) {
                 continue;
             }
-            let Some(projection) = quad::project(&self.corners[face], position) else { continue };
+            let Some(projection) = face::project(&self.coordinates[index], position) else { continue };
             let averted = facing.is_some_and(|outward| dot(outward, projection.normal) >= 0.0);
-            if averted || projection.overhang > extension_zone * self.sizes[face] + hair {
+            if averted || projection.overhang > extension_zone * self.sizes[index] + hair {
                 continue;
             }
             nearest = nearest.min(projection.distance);
@@ -130,11 +139,11 @@ fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<(Node
         SurfaceKind::Nodes(nodes) => nodes.iter().map(|&n| (n, node_area, None)).collect(),
         SurfaceKind::Faces(faces) => {
             let mut sums: FxHashMap<NodeId, (f64, [f64; 3])> = FxHashMap::default();
-            for &face in faces {
-                let nodes = mesh.face_nodes(face);
-                let corners = nodes.map(|n| mesh.nodes[n.index()]);
-                let (areas, vectors) = (quad::nodal_areas(&corners), quad::nodal_area_vectors(&corners));
-                for ((node, area), vector) in nodes.into_iter().zip(areas).zip(vectors) {
+            for &element_face in faces {
+                let nodes = mesh.face_nodes(element_face);
+                let coordinates = Coordinates::of(nodes.iter().map(|n| mesh.nodes[n.index()]));
+                let (areas, vectors) = (face::nodal_areas(&coordinates), face::nodal_area_vectors(&coordinates));
+                for ((&node, area), vector) in nodes.iter().zip(areas).zip(vectors) {
                     let entry = sums.entry(node).or_default();
                     entry.0 += area;
                     for (sum, v) in entry.1.iter_mut().zip(vector) {
@@ -173,7 +182,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         let total = secondaries.len();
         let mut lost = Vec::new();
         for (node, area, outward) in secondaries {
-            let Some((face, p)) = primary.anchor(mesh, node, outward, pair.extension_zone) else {
+            let Some((found, p)) = primary.anchor(mesh, node, outward, pair.extension_zone) else {
                 lost.push(mesh.node_labels[node.index()]);
                 continue;
             };
@@ -183,10 +192,10 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                 area,
                 normal: p.normal,
                 tangents: tangents(p.normal),
-                primary: mesh.face_nodes(primary.faces[face as usize]),
-                weights: quad::shape(p.natural),
+                primary: mesh.face_nodes(primary.faces[found as usize]),
+                weights: face::shape(primary.coordinates[found as usize].len(), p.natural),
                 clearance: dot(p.normal, sub(mesh.nodes[node.index()], p.foot)),
-                face_size: primary.sizes[face as usize],
+                face_size: primary.sizes[found as usize],
             });
         }
         if !lost.is_empty() {

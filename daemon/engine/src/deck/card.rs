@@ -9,6 +9,7 @@ use super::keywords::{Effect, Found, Keyword, Parameter, ParameterValue, find, f
 use super::lex::{fields, key, unquoted};
 use super::report::{At, Report, excerpt};
 use crate::diagnostic::Severity;
+use crate::model::ElementKind;
 
 /// Everything that the lines of a deck say, before any reference is followed.
 #[derive(Default)]
@@ -47,8 +48,10 @@ pub struct NodeTable {
 pub struct ElementTable {
     /// Numbers.
     pub labels: Vec<u32>,
-    /// Labels of the nodes.
-    pub nodes: Vec<[u32; 8]>,
+    /// Types as written; the dialect is not looked at yet.
+    pub kinds: Vec<ElementKind>,
+    /// Labels of the nodes of all elements, as many for each as its type has.
+    pub nodes: Vec<u32>,
     /// Lines.
     pub at: Vec<At>,
 }

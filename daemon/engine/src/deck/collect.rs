@@ -2,6 +2,8 @@
 
 use std::io;
 
+use crate::model::ElementKind;
+
 use super::card::{Body, Card, Deck, Faces, Header, Members, parse_header};
 use super::data::Lines;
 use super::keywords::DataLines;
@@ -16,8 +18,6 @@ const HEADING_BYTES_MAX: usize = 64 * 1024;
 
 /// Largest coordinate: products of several must stay finite.
 const COORDINATE_MAX: f64 = 1e60;
-
-const NODES_PER_ELEMENT: usize = 8;
 
 /// Reads every line of the deck.
 pub fn collect(source: &mut Source<'_>, report: &mut Report) -> io::Result<Deck> {
@@ -80,6 +80,18 @@ fn join_continuations(source: &mut Source<'_>, mut header: Vec<u8>) -> io::Resul
     Ok(header)
 }
 
+/// Remedy for an element type that is not solved.
+const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20 and C3D20R are solved";
+
+/// Kind of a type in upper case, as Abaqus means it.
+fn element_kind(name: &str) -> Option<ElementKind> {
+    ElementKind::ALL.into_iter().find(|kind| kind.name() == name)
+}
+
+fn element_remedy(kind: ElementKind) -> String {
+    format!("write: number, node 1, …, node {}", kind.node_count())
+}
+
 fn binary_reason(line: &[u8]) -> &'static str {
     match line {
         [0x1f, 0x8b, ..] => "it is compressed by gzip; unpack it first",
@@ -99,7 +111,7 @@ enum Sink {
     Heading,
     Lines(Lines),
     Nodes,
-    Elements,
+    Elements(ElementKind),
     /// Elements of a type that is not supported: only their labels are noted.
     RefusedElements,
     Members(Members, Generate),
@@ -182,12 +194,12 @@ impl Collector<'_> {
                 let start = self.deck.elements.labels.len() as u32;
                 body = Body::Elements(start..start);
                 let kind = parameters.value("TYPE").unwrap_or("");
-                if key(kind) == "C3D8" {
-                    Sink::Elements
+                if let Some(known) = element_kind(&key(kind)) {
+                    Sink::Elements(known)
                 } else {
                     if !kind.is_empty() {
                         let message = format!("element type {} is not supported", excerpt(kind.as_bytes()));
-                        self.report.error(at, keyword.name, message, "C3D8 is the element type that is solved");
+                        self.report.error(at, keyword.name, message, ELEMENT_TYPES);
                     }
                     Sink::RefusedElements
                 }
@@ -226,7 +238,10 @@ impl Collector<'_> {
         match &mut self.sink {
             Sink::Skip => {}
             Sink::Nodes => self.node_line(line, at),
-            Sink::Elements => self.element_line(line, at),
+            Sink::Elements(kind) => {
+                let kind = *kind;
+                self.element_line(line, at, kind);
+            }
             Sink::RefusedElements => self.refused_element_line(line),
             Sink::Members(..) | Sink::NodeFaces(_) => self.member_line(line, at),
             Sink::Faces(_) => self.face_line(line, at),
@@ -306,7 +321,7 @@ impl Collector<'_> {
         }
     }
 
-    fn element_line(&mut self, line: &[u8], at: At) {
+    fn element_line(&mut self, line: &[u8], at: At, kind: ElementKind) {
         let row = &mut self.row;
         row.at.get_or_insert(at);
         for field in fields(line) {
@@ -315,13 +330,13 @@ impl Collector<'_> {
                 Err(fault) if !row.bad => {
                     let what = if row.numbers.is_empty() { "element number" } else { "node number" };
                     let message = format!("{what} {} {}", excerpt(field), fault.text());
-                    self.report.error(at, "*ELEMENT", message, "write: number, node 1, …, node 8");
+                    self.report.error(at, "*ELEMENT", message, element_remedy(kind));
                     row.bad = true;
                 }
                 Err(_) => {}
             }
         }
-        if row.numbers.len() > NODES_PER_ELEMENT || !ends_with_comma(line) {
+        if row.numbers.len() > kind.node_count() || !ends_with_comma(line) {
             self.finish_element();
         }
     }
@@ -330,22 +345,20 @@ impl Collector<'_> {
     fn finish_element(&mut self) {
         let row = std::mem::take(&mut self.row);
         let (Some(at), elements) = (row.at, &mut self.deck.elements) else { return };
-        if let (Some((&label, nodes)), false) = (row.numbers.split_first(), row.bad) {
-            if let Ok(nodes) = <[u32; NODES_PER_ELEMENT]>::try_from(nodes) {
+        if let (Some((&label, nodes)), Sink::Elements(kind), false) = (row.numbers.split_first(), &self.sink, row.bad) {
+            let (kind, count) = (*kind, kind.node_count());
+            if nodes.len() == count {
                 elements.labels.push(label);
-                elements.nodes.push(nodes);
+                elements.kinds.push(kind);
+                elements.nodes.extend_from_slice(nodes);
                 elements.at.push(at);
                 self.row.numbers = row.numbers;
                 self.row.numbers.clear();
                 return;
             }
-            let message = format!("element {label} has {} nodes; C3D8 has {NODES_PER_ELEMENT}", nodes.len());
-            self.report.error(
-                at,
-                "*ELEMENT",
-                message,
-                "write: number, node 1, …, node 8; a comma at the end continues the line",
-            );
+            let message = format!("element {label} has {} nodes; {} has {count}", nodes.len(), kind.name());
+            let remedy = format!("{}; a comma at the end continues the line", element_remedy(kind));
+            self.report.error(at, "*ELEMENT", message, remedy);
         }
         self.deck.refused_elements.extend(row.numbers.first());
     }

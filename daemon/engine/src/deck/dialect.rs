@@ -40,6 +40,18 @@ const DIFFERENCES: &[Difference] = &[
         "all strains are integrated at 2x2x2 points",
         "as CalculiX",
     ),
+    departs(
+        "*ELEMENT, TYPE=C3D8I",
+        "thirteen incompatible modes: nine of the displacement gradient and four against volumetric locking",
+        "incompatible modes of its own, with a correction of shear",
+        "in both dialects nine incompatible modes (Taylor, Beresford, Wilson) on the fully integrated brick",
+    ),
+    departs(
+        "*ELEMENT, TYPE=C3D8R",
+        "uniform strain; the kind and the stiffness of hourglass control come from *SECTION CONTROLS",
+        "uniform strain; hourglass stiffness in proportion to the first elastic constant",
+        "in both dialects uniform strain with the hourglass stiffness of Flanagan and Belytschko, coefficient 0.05",
+    ),
     follows(
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL",
         "p = p0/(e-1) (1+h/c0) (exp(1+h/c0) - 1) for h > -c0, straight beyond h = 6 c0",

@@ -49,7 +49,7 @@ impl Faces {
         let face = match face {
             b"" => 0,
             [b'S' | b's', digit @ b'1'..=b'6'] => digit - b'0',
-            _ => return Err((format!("a brick has no face {}", excerpt(face)), FACE_REMEDY)),
+            _ => return Err((format!("no element has a face {}", excerpt(face)), FACE_REMEDY)),
         };
         if looks_numeric(region) {
             let label =

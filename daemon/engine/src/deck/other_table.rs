@@ -8,7 +8,7 @@ const STATIC: Effect = Effect::Refused("only static steps are solved; replace th
 const FLAT: Effect = Effect::Refused("write the deck without parts and assemblies");
 const PLAIN_NODES: Effect = Effect::Refused("write the nodes and elements themselves");
 const AXES: Effect = Effect::Refused("give values in global directions");
-const SOLIDS: Effect = Effect::Refused("only C3D8 solids with *SOLID SECTION are solved");
+const SOLIDS: Effect = Effect::Refused("only solid elements (C3D4 to C3D20R) with *SOLID SECTION are solved");
 const ELASTIC_ONLY: Effect =
     Effect::Refused("only isotropic linear elasticity is solved; describe the material by *ELASTIC");
 const LOADS: Effect = Effect::Refused("loads are *BOUNDARY, *CLOAD, *DLOAD (P1 to P6, GRAV) and *DSLOAD (P)");

@@ -69,7 +69,7 @@ fn describe_surface(model: &Model, surface: SurfaceId) -> String {
     match &mesh.surfaces[surface.index()].kind {
         SurfaceKind::Nodes(nodes) => format!("{} nodes", nodes.len()),
         SurfaceKind::Faces(faces) => {
-            let mut nodes: Vec<_> = faces.iter().flat_map(|&face| mesh.face_nodes(face)).collect();
+            let mut nodes: Vec<_> = faces.iter().flat_map(|&face| mesh.face_nodes(face).to_vec()).collect();
             nodes.sort_unstable();
             nodes.dedup();
             format!("{} faces with {} nodes", faces.len(), nodes.len())

@@ -10,35 +10,22 @@
 //! Source of the selective reduction: Abaqus Theory manual 3.2.4 (fully integrated first-order solids use the
 //! mean volume change); Hughes (1980), B-bar.
 
-use crate::model::ElementKind;
+use super::Elasticity;
+
+/// How the volumetric part is integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Volumetric {
+    /// Its mean over the element: C3D8 of Abaqus.
+    Mean,
+    /// Point by point: C3D8 of CalculiX.
+    Local,
+}
 
 /// Coordinates of the corner nodes, in the order of the manual [length].
 pub type Corners = [[f64; 3]; 8];
 
-/// Elastic constants that an element needs.
-#[derive(Clone, Copy, Debug)]
-pub struct Elasticity {
-    /// Lamé's first constant [pressure].
-    pub lambda: f64,
-    /// Shear modulus [pressure].
-    pub mu: f64,
-}
-
-impl Elasticity {
-    /// From Young's modulus and Poisson's ratio.
-    pub fn new(youngs_modulus: f64, poissons_ratio: f64) -> Self {
-        let (e, nu) = (youngs_modulus, poissons_ratio);
-        Self { lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu: e / (2.0 * (1.0 + nu)) }
-    }
-
-    /// Bulk modulus [pressure].
-    fn kappa(self) -> f64 {
-        self.lambda + 2.0 / 3.0 * self.mu
-    }
-}
-
 /// Signs of the natural coordinates of the corners.
-const CORNER: [[f64; 3]; 8] = [
+pub(super) const CORNER: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -53,11 +40,11 @@ const CORNER: [[f64; 3]; 8] = [
 const GAUSS: f64 = 0.577_350_269_189_625_8;
 
 /// Gradients of the shape functions and the volume at one integration point.
-struct Point {
+pub(super) struct Point {
     /// ∇N_a [1/length].
-    gradient: [[f64; 3]; 8],
+    pub gradient: [[f64; 3]; 8],
     /// det J times the weight (1) [length³].
-    volume: f64,
+    pub volume: f64,
 }
 
 fn shape(natural: [f64; 3]) -> [f64; 8] {
@@ -65,11 +52,11 @@ fn shape(natural: [f64; 3]) -> [f64; 8] {
 }
 
 /// Natural coordinates of integration point `g`; points are numbered like the corners they are nearest to.
-fn gauss_point(g: usize) -> [f64; 3] {
+pub(super) fn gauss_point(g: usize) -> [f64; 3] {
     CORNER[g].map(|c| c * GAUSS)
 }
 
-fn point(corners: &Corners, natural: [f64; 3]) -> Point {
+pub(super) fn point(corners: &Corners, natural: [f64; 3]) -> Point {
     let mut dn = [[0.0; 3]; 8];
     let mut j = [[0.0; 3]; 3];
     for a in 0..8 {
@@ -104,7 +91,7 @@ pub fn jacobian_min(corners: &Corners) -> f64 {
 }
 
 /// Position of block (a, b), a ≤ b, in [`Stiffness`].
-pub const fn block_index(a: usize, b: usize) -> usize {
+const fn block_index(a: usize, b: usize) -> usize {
     a * 8 - a * (a + 1) / 2 + b
 }
 
@@ -112,7 +99,7 @@ pub const fn block_index(a: usize, b: usize) -> usize {
 pub type Stiffness = [[f64; 9]; 36];
 
 /// Stiffness of a brick.
-pub fn stiffness(kind: ElementKind, corners: &Corners, elasticity: Elasticity) -> Stiffness {
+pub fn stiffness(volumetric: Volumetric, corners: &Corners, elasticity: Elasticity) -> Stiffness {
     let mut moments = [[0.0; 9]; 36];
     let mut mean = [[0.0; 3]; 8];
     let mut volume = 0.0;
@@ -136,9 +123,9 @@ pub fn stiffness(kind: ElementKind, corners: &Corners, elasticity: Elasticity) -
         }
     }
     let (mu, kappa) = (elasticity.mu, elasticity.kappa());
-    let outer = match kind {
-        ElementKind::C3D8 => -2.0 / 3.0 * mu,
-        ElementKind::C3D8Full => elasticity.lambda,
+    let outer = match volumetric {
+        Volumetric::Mean => -2.0 / 3.0 * mu,
+        Volumetric::Local => elasticity.lambda,
     };
     let mut k = [[0.0; 9]; 36];
     for a in 0..8 {
@@ -151,7 +138,7 @@ pub fn stiffness(kind: ElementKind, corners: &Corners, elasticity: Elasticity) -
                 }
                 out[4 * i] += trace;
             }
-            if kind == ElementKind::C3D8 {
+            if volumetric == Volumetric::Mean {
                 for i in 0..3 {
                     for j in 0..3 {
                         out[3 * i + j] += kappa * mean[a][i] * mean[b][j] / volume;
@@ -163,27 +150,8 @@ pub fn stiffness(kind: ElementKind, corners: &Corners, elasticity: Elasticity) -
     k
 }
 
-/// `K u` of one element, node by node [force].
-pub fn internal_force(k: &Stiffness, u: &[[f64; 3]; 8]) -> [[f64; 3]; 8] {
-    let mut f = [[0.0; 3]; 8];
-    for a in 0..8 {
-        for b in a..8 {
-            let m = &k[block_index(a, b)];
-            for i in 0..3 {
-                for j in 0..3 {
-                    f[a][i] += m[3 * i + j] * u[b][j];
-                    if a != b {
-                        f[b][j] += m[3 * i + j] * u[a][i];
-                    }
-                }
-            }
-        }
-    }
-    f
-}
-
 /// Stress (11, 22, 33, 12, 13, 23) at the eight integration points [pressure].
-pub fn stress(kind: ElementKind, corners: &Corners, elasticity: Elasticity, u: &[[f64; 3]; 8]) -> [[f64; 6]; 8] {
+pub fn stress(volumetric: Volumetric, corners: &Corners, elasticity: Elasticity, u: &[[f64; 3]; 8]) -> [[f64; 6]; 8] {
     let points: [Point; 8] = std::array::from_fn(|g| point(corners, gauss_point(g)));
     let volume: f64 = points.iter().map(|p| p.volume).sum();
     let divergence = |p: &Point| (0..8).map(|a| (0..3).map(|i| p.gradient[a][i] * u[a][i]).sum::<f64>()).sum::<f64>();
@@ -199,11 +167,11 @@ pub fn stress(kind: ElementKind, corners: &Corners, elasticity: Elasticity, u: &
             }
         }
         let local = h[0][0] + h[1][1] + h[2][2];
-        let volumetric = match kind {
-            ElementKind::C3D8 => mean,
-            ElementKind::C3D8Full => local,
+        let dilatation = match volumetric {
+            Volumetric::Mean => mean,
+            Volumetric::Local => local,
         };
-        let pressure_part = elasticity.kappa() * volumetric - 2.0 / 3.0 * elasticity.mu * local;
+        let pressure_part = elasticity.kappa() * dilatation - 2.0 / 3.0 * elasticity.mu * local;
         let mu = elasticity.mu;
         [
             pressure_part + 2.0 * mu * h[0][0],
@@ -253,6 +221,11 @@ mod tests {
         [0.0, 1.2, 1.1],
     ];
 
+    fn internal_force(k: &Stiffness, u: &[[f64; 3]; 8]) -> [[f64; 3]; 8] {
+        let forces = crate::element::Stiffness::from_blocks(8, k).force(u);
+        std::array::from_fn(|a| forces[a])
+    }
+
     fn elasticity() -> Elasticity {
         Elasticity::new(210.0, 0.3)
     }
@@ -263,7 +236,7 @@ mod tests {
 
     #[test]
     fn rigid_motions_need_no_force() {
-        for kind in [ElementKind::C3D8, ElementKind::C3D8Full] {
+        for kind in [Volumetric::Mean, Volumetric::Local] {
             let k = stiffness(kind, &DISTORTED, elasticity());
             let motion = field([[0.0, -0.3, 0.2], [0.3, 0.0, -0.1], [-0.2, 0.1, 0.0]], [1.0, -2.0, 3.0]);
             let worst = internal_force(&k, &motion).iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
@@ -279,7 +252,7 @@ mod tests {
         let trace = gradient[0][0] + gradient[1][1] + gradient[2][2];
         let expected =
             |i: usize, j: usize| e.mu * (gradient[i][j] + gradient[j][i]) + if i == j { e.lambda * trace } else { 0.0 };
-        for kind in [ElementKind::C3D8, ElementKind::C3D8Full] {
+        for kind in [Volumetric::Mean, Volumetric::Local] {
             for s in extrapolate(&stress(kind, &DISTORTED, e, &u)) {
                 for (value, (i, j)) in s.iter().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
                     assert!((value - expected(i, j)).abs() < 1e-13, "{kind:?}");
@@ -307,7 +280,7 @@ mod tests {
     fn internal_force_is_the_derivative_of_the_energy() {
         let u: [[f64; 3]; 8] =
             std::array::from_fn(|a| std::array::from_fn(|i| ((a * 3 + i) as f64 * 0.7).sin() * 1e-2));
-        for kind in [ElementKind::C3D8, ElementKind::C3D8Full] {
+        for kind in [Volumetric::Mean, Volumetric::Local] {
             let k = stiffness(kind, &DISTORTED, elasticity());
             let energy = |u: &[[f64; 3]; 8]| -> f64 {
                 let f = internal_force(&k, u);

@@ -2,6 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
+use super::{Elements, FaceNodes};
+
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -55,8 +57,8 @@ pub struct Mesh {
     pub node_labels: Vec<u32>,
     /// Node of each label.
     pub node_of_label: FxHashMap<u32, NodeId>,
-    /// Elements.
-    pub elements: Vec<Element>,
+    /// Elements: kinds and nodes.
+    pub elements: Elements,
     /// Number that the analyst gave to each element.
     pub element_labels: Vec<u32>,
     /// Element of each label.
@@ -71,29 +73,7 @@ pub struct Mesh {
     pub surfaces: Vec<Surface>,
 }
 
-/// Element kinds that can be solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ElementKind {
-    /// Eight-node brick, volumetric part selectively reduced (mean dilatation).
-    C3D8,
-    /// Eight-node brick, fully integrated: what CalculiX calls C3D8.
-    C3D8Full,
-}
-
-/// One element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Element {
-    /// Formulation.
-    pub kind: ElementKind,
-    /// Corner nodes in the order of the manual: bottom face 1-4, top face 5-8.
-    pub nodes: [NodeId; 8],
-}
-
-/// Local nodes of the faces S1..S6 of a brick, outward by the right-hand rule.
-pub const BRICK_FACES: [[usize; 4]; 6] =
-    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-
-/// Face of an element; `face` is 0 for S1 (or P1) up to 5.
+/// Face of an element; `face` is 0 for S1 (or P1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ElementFace {
     /// The element.
@@ -103,10 +83,9 @@ pub struct ElementFace {
 }
 
 impl Mesh {
-    /// Corner nodes of a face, outward by the right-hand rule.
-    pub fn face_nodes(&self, face: ElementFace) -> [NodeId; 4] {
-        let nodes = &self.elements[face.element.index()].nodes;
-        BRICK_FACES[face.face as usize].map(|local| nodes[local])
+    /// Nodes of a face, outward by the right-hand rule: corners, then midside nodes.
+    pub fn face_nodes(&self, face: ElementFace) -> FaceNodes {
+        self.elements.face_nodes(face)
     }
 }
 

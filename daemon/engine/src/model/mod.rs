@@ -3,9 +3,11 @@
 //! Indices (`NodeId`, `ElementId`, …) count from zero in the order of definition; `label` fields hold the
 //! numbers that the analyst wrote. Units are consistent units.
 
+mod element;
 mod history;
 mod mesh;
 
+pub use element::*;
 pub use history::*;
 pub use mesh::*;
 

@@ -7,11 +7,21 @@ use std::path::{Path, PathBuf};
 use super::NodalFields;
 use super::file::OutputError;
 use super::vtu::{Array, Grid};
-use crate::model::Model;
+use crate::model::{ElementShape, Mesh, Model};
 use crate::simulation::{ContactPointResult, ContactStatus, PreparedModel};
 
-/// Cell type of an eight-node brick.
-const VTK_HEXAHEDRON: u8 = 12;
+/// VTK's cell type of a shape, and VTK's order of its nodes where that is not the order of the manual: the first triangle of
+/// a wedge faces outward.
+fn cell(shape: ElementShape) -> (u8, Option<&'static [usize]>) {
+    match shape {
+        ElementShape::Tetrahedron4 => (10, None),
+        ElementShape::Tetrahedron10 => (24, None),
+        ElementShape::Wedge6 => (13, Some(&[0, 2, 1, 3, 5, 4])),
+        ElementShape::Wedge15 => (26, Some(&[0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13])),
+        ElementShape::Hexahedron8 => (12, None),
+        ElementShape::Hexahedron20 => (25, None),
+    }
+}
 
 /// `CSTATUS` of a node that is no contact point.
 const NO_CONTACT_POINT: i8 = -1;
@@ -127,19 +137,44 @@ impl Frames {
 impl MeshArrays {
     fn new(model: &Model) -> Self {
         let mesh = &model.mesh;
-        let cells = mesh.elements.len();
         Self {
             coordinates: Array::real("Points", &["", "", ""], mesh.nodes.iter().flatten().copied()),
             topology: [
-                Array::whole("connectivity", mesh.elements.iter().flat_map(|e| e.nodes).map(|n| n.0)),
-                Array::whole("offsets", (1..=cells as u32).map(|i| 8 * i)),
-                Array::byte("types", std::iter::repeat_n(VTK_HEXAHEDRON, cells)),
+                Array::whole("connectivity", connectivity(mesh).into_iter()),
+                Array::whole("offsets", offsets(mesh).into_iter()),
+                Array::byte("types", types(mesh).into_iter()),
             ],
             node_labels: Array::whole("node", mesh.node_labels.iter().copied()),
             element_labels: Array::whole("element", mesh.element_labels.iter().copied()),
             materials: Array::whole("material", mesh.element_materials.iter().map(|m| m.0)),
         }
     }
+}
+
+/// Nodes of all cells in VTK's order.
+fn connectivity(mesh: &Mesh) -> Vec<u32> {
+    let mut out = Vec::with_capacity(mesh.elements.node_references());
+    for (kind, nodes) in mesh.elements.iter() {
+        match cell(kind.shape()).1 {
+            None => out.extend(nodes.iter().map(|n| n.0)),
+            Some(order) => out.extend(order.iter().map(|&a| nodes[a].0)),
+        }
+    }
+    out
+}
+
+/// End of each cell in the connectivity.
+fn offsets(mesh: &Mesh) -> Vec<u32> {
+    let mut end = 0;
+    let ends = mesh.elements.iter().map(|(_, nodes)| {
+        end += nodes.len() as u32;
+        end
+    });
+    ends.collect()
+}
+
+fn types(mesh: &Mesh) -> Vec<u8> {
+    mesh.elements.iter().map(|(kind, _)| cell(kind.shape()).0).collect()
 }
 
 /// Contact results as nodal fields: no pressure and an undefined clearance (NaN) away from the contact points. A node that is a

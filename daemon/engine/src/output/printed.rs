@@ -197,9 +197,9 @@ fn stress_table(text: &mut String, model: &Model, request: &ElementRequest, stre
     let (whom, mut nodes): (String, Vec<NodeId>) = match request.set.map(|s| &mesh.element_sets[s.index()]) {
         Some(set) => (
             format!("ELEMENT SET {}", set.name),
-            set.elements.iter().flat_map(|e| mesh.elements[e.index()].nodes).collect(),
+            set.elements.iter().flat_map(|e| mesh.elements.nodes(e.index())).copied().collect(),
         ),
-        None => ("ALL ELEMENTS".to_owned(), mesh.elements.iter().flat_map(|e| e.nodes).collect()),
+        None => ("ALL ELEMENTS".to_owned(), mesh.elements.iter().flat_map(|(_, nodes)| nodes).copied().collect()),
     };
     nodes.sort_unstable();
     nodes.dedup();

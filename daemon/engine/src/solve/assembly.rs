@@ -1,7 +1,7 @@
 //! Stiffness matrix of one body on its free degrees of freedom, lower triangle by columns, in elimination order.
 
 use super::numbering::NodeGraph;
-use crate::element::brick::{self, Elasticity};
+use crate::element::{self, Coordinates, Elasticity, Stiffness};
 use crate::model::{Mesh, Model};
 
 /// Symmetric matrix: lower triangle, column by column, rows ascending.
@@ -31,16 +31,17 @@ pub fn elasticities(model: &Model) -> Vec<Elasticity> {
     model.materials.iter().map(|m| Elasticity::new(m.youngs_modulus, m.poissons_ratio)).collect()
 }
 
-/// Corner coordinates of an element.
-pub fn corners(mesh: &Mesh, element: u32) -> brick::Corners {
-    mesh.elements[element as usize].nodes.map(|n| mesh.nodes[n.index()])
+/// Node coordinates of an element.
+pub fn coordinates(mesh: &Mesh, element: u32) -> Coordinates {
+    Coordinates::of(mesh.elements.nodes(element as usize).iter().map(|n| mesh.nodes[n.index()]))
 }
 
-/// Stiffness of an element of the model.
-pub fn element_stiffness(model: &Model, elasticities: &[Elasticity], element: u32) -> brick::Stiffness {
+/// Stiffness of an element of the model, into `out`.
+pub fn element_stiffness(model: &Model, elasticities: &[Elasticity], element: u32, out: &mut Stiffness) {
     let mesh = &model.mesh;
     let material = mesh.element_materials[element as usize];
-    brick::stiffness(mesh.elements[element as usize].kind, &corners(mesh, element), elasticities[material.index()])
+    let kind = mesh.elements.kind(element as usize);
+    element::stiffness(kind, &coordinates(mesh, element), elasticities[material.index()], out);
 }
 
 /// Numbering that assembly needs of a body.
@@ -95,12 +96,15 @@ pub fn assemble(
         later_starts.push(later.len());
     }
     let mut values = vec![0.0; rows.len()];
+    let mut k = Stiffness::default();
+    let mut nodes = Vec::new();
     for &e in elements {
-        let k = element_stiffness(model, elasticities, e);
-        let nodes = model.mesh.elements[e as usize].nodes.map(|n| local[n.index()]);
-        for a in 0..8 {
-            for b in a..8 {
-                let block = &k[brick::block_index(a, b)];
+        element_stiffness(model, elasticities, e, &mut k);
+        nodes.clear();
+        nodes.extend(model.mesh.elements.nodes(e as usize).iter().map(|n| local[n.index()]));
+        for a in 0..nodes.len() {
+            for b in a..nodes.len() {
+                let block = k.block(a, b);
                 let (pa, pb) = (position[nodes[a] as usize], position[nodes[b] as usize]);
                 // The earlier node owns the columns. `transposed`: block rows belong to the earlier node's columns.
                 let (first, second, transposed) = if pa <= pb { (a, b, false) } else { (b, a, true) };

@@ -7,7 +7,7 @@ use super::numbering::{NOT_FREE, NodeGraph};
 use super::ordering;
 use super::supports::Supports;
 use crate::contact::points::ContactPoint;
-use crate::element::brick::Elasticity;
+use crate::element::Elasticity;
 use crate::model::{Model, NodeId};
 use crate::simulation::Phase;
 

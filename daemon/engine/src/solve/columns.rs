@@ -1,6 +1,6 @@
 //! Load patterns: the fixed shapes whose scalar coefficients change in time.
 
-use crate::element::{brick, quad};
+use crate::element::{self, Coordinates, face};
 use crate::model::{ElementFace, LoadKind, Model, NodeId};
 
 /// A pattern of unit coefficient; entries sorted by node and direction, each at most once.
@@ -50,11 +50,11 @@ pub fn force_pattern(model: &Model, kind: &LoadKind) -> Column {
         }
         LoadKind::Gravity { elements, direction } => {
             for &e in elements {
-                let element = &model.mesh.elements[e.index()];
+                let (kind, nodes) = (model.mesh.elements.kind(e.index()), model.mesh.elements.nodes(e.index()));
                 let material = &model.materials[model.mesh.element_materials[e.index()].index()];
                 let density = material.density.expect("the deck reader asks for a density where gravity acts");
-                let volumes = brick::nodal_volumes(&super::assembly::corners(&model.mesh, e.0));
-                for (node, volume) in element.nodes.into_iter().zip(volumes) {
+                let volumes = element::nodal_volumes(kind, &super::assembly::coordinates(&model.mesh, e.0));
+                for (&node, volume) in nodes.iter().zip(volumes) {
                     for (d, component) in direction.iter().enumerate().filter(|(_, c)| **c != 0.0) {
                         entries.push((node, d as u8, density * volume * component));
                     }
@@ -69,8 +69,8 @@ pub fn force_pattern(model: &Model, kind: &LoadKind) -> Column {
 fn pressure(model: &Model, faces: &[ElementFace], entries: &mut Vec<(NodeId, u8, f64)>) {
     for &face in faces {
         let nodes = model.mesh.face_nodes(face);
-        let corners = nodes.map(|n| model.mesh.nodes[n.index()]);
-        for (node, area) in nodes.into_iter().zip(quad::nodal_area_vectors(&corners)) {
+        let coordinates = Coordinates::of(nodes.iter().map(|n| model.mesh.nodes[n.index()]));
+        for (&node, area) in nodes.iter().zip(face::nodal_area_vectors(&coordinates)) {
             for (d, component) in area.into_iter().enumerate() {
                 entries.push((node, d as u8, -component));
             }

@@ -27,10 +27,10 @@ impl Bodies {
             i
         }
         let mut used = vec![false; mesh.nodes.len()];
-        for element in &mesh.elements {
-            let first = root(&mut parent, element.nodes[0].0);
+        for (_, element) in mesh.elements.iter() {
+            let first = root(&mut parent, element[0].0);
             let mut low = first;
-            for n in element.nodes {
+            for n in element {
                 used[n.index()] = true;
                 let r = root(&mut parent, n.0);
                 let (a, b) = (low.min(r), low.max(r));
@@ -55,8 +55,8 @@ impl Bodies {
             nodes[body as usize].push(NodeId(i));
         }
         let mut elements = vec![Vec::new(); nodes.len()];
-        for (e, element) in mesh.elements.iter().enumerate() {
-            elements[of_node[element.nodes[0].index()] as usize].push(e as u32);
+        for (e, (_, element)) in mesh.elements.iter().enumerate() {
+            elements[of_node[element[0].index()] as usize].push(e as u32);
         }
         Self { of_node, elements, nodes }
     }
@@ -76,7 +76,7 @@ impl NodeGraph {
         let n = nodes.len();
         let mut count = vec![0u32; n + 1];
         for &e in elements {
-            for node in mesh.elements[e as usize].nodes {
+            for node in mesh.elements.nodes(e as usize) {
                 count[local[node.index()] as usize + 1] += 1;
             }
         }
@@ -86,7 +86,7 @@ impl NodeGraph {
         let mut fill = count.clone();
         let mut incident = vec![0u32; count[n] as usize];
         for &e in elements {
-            for node in mesh.elements[e as usize].nodes {
+            for node in mesh.elements.nodes(e as usize) {
                 let slot = &mut fill[local[node.index()] as usize];
                 incident[*slot as usize] = e;
                 *slot += 1;
@@ -100,7 +100,7 @@ impl NodeGraph {
             mark[i] = i as u32;
             let begin = neighbours.len();
             for &e in &incident[count[i] as usize..count[i + 1] as usize] {
-                for node in mesh.elements[e as usize].nodes {
+                for node in mesh.elements.nodes(e as usize) {
                     let j = local[node.index()];
                     if mark[j as usize] != i as u32 {
                         mark[j as usize] = i as u32;

@@ -4,8 +4,11 @@ use super::assembly::element_stiffness;
 use super::body::Context;
 use super::columns::Column;
 use super::linear::Dense;
-use crate::element::brick::{self, Elasticity};
-use crate::model::{Model, NodeId};
+use crate::element::{Coordinates, Elasticity, Stiffness};
+use crate::model::{ELEMENT_NODES_MAX, Model, NodeId};
+
+/// Vectors at the nodes of an element; those beyond its node count are zero.
+type NodeVectors = [[f64; 3]; ELEMENT_NODES_MAX];
 
 /// Which directions of which nodes are prescribed.
 pub struct Supports {
@@ -46,22 +49,24 @@ impl Supports {
     ) -> Dense {
         let mut energy = Dense::zeros(context.columns.len(), context.columns.len());
         let patterns = Patterns::new(context.model, context.columns);
-        let mut touched: Vec<(usize, [[f64; 3]; 8])> = Vec::new();
+        let mut touched: Vec<(usize, NodeVectors)> = Vec::new();
+        let mut k = Stiffness::default();
         for &e in elements {
-            let nodes = context.model.mesh.elements[e as usize].nodes;
+            let nodes = context.model.mesh.elements.nodes(e as usize);
             patterns.gather(nodes, &mut touched);
             if touched.is_empty() {
                 continue;
             }
-            let k = element_stiffness(context.model, context.elasticities, e);
+            element_stiffness(context.model, context.elasticities, e, &mut k);
             for (j, u) in &touched {
-                let forces = brick::internal_force(&k, u);
+                let forces = k.force(&u[..nodes.len()]);
+                let forces = &forces[..nodes.len()];
                 for (i, v) in &touched {
                     energy.column_mut(*j)[*i] +=
-                        v.iter().flatten().zip(forces.iter().flatten()).map(|(v, f)| v * f).sum::<f64>();
+                        v.iter().zip(forces).flat_map(|(v, f)| v.iter().zip(f)).map(|(v, f)| v * f).sum::<f64>();
                 }
-                for (node, force) in nodes.into_iter().zip(forces) {
-                    for (direction, f) in force.into_iter().enumerate() {
+                for (&node, force) in nodes.iter().zip(forces) {
+                    for (direction, &f) in force.iter().enumerate() {
                         add(node, direction, *j, f);
                     }
                 }
@@ -109,16 +114,16 @@ impl Patterns {
     }
 
     /// Columns with a value on one of the nodes, with their displacements of these nodes; by column.
-    fn gather(&self, nodes: [NodeId; 8], out: &mut Vec<(usize, [[f64; 3]; 8])>) {
+    fn gather(&self, nodes: &[NodeId], out: &mut Vec<(usize, NodeVectors)>) {
         out.clear();
-        for (a, node) in nodes.into_iter().enumerate() {
+        for (a, node) in nodes.iter().enumerate() {
             for &(j, direction, value) in
                 &self.entries[self.starts[node.index()] as usize..self.starts[node.index() + 1] as usize]
             {
                 let at = match out.iter().position(|&(column, _)| column == j as usize) {
                     Some(at) => at,
                     None => {
-                        out.push((j as usize, [[0.0; 3]; 8]));
+                        out.push((j as usize, [[0.0; 3]; ELEMENT_NODES_MAX]));
                         out.len() - 1
                     }
                 };
@@ -137,11 +142,12 @@ pub fn internal_forces(
     displacement: &[[f64; 3]],
     mut add: impl FnMut(NodeId, usize, f64),
 ) {
+    let mut k = Stiffness::default();
     for &e in elements {
-        let nodes = model.mesh.elements[e as usize].nodes;
-        let k = element_stiffness(model, elasticities, e);
-        let u = nodes.map(|n| displacement[n.index()]);
-        for (node, force) in nodes.into_iter().zip(brick::internal_force(&k, &u)) {
+        let nodes = model.mesh.elements.nodes(e as usize);
+        element_stiffness(model, elasticities, e, &mut k);
+        let u = Coordinates::of(nodes.iter().map(|n| displacement[n.index()]));
+        for (&node, force) in nodes.iter().zip(k.force(&u)) {
             for (direction, f) in force.into_iter().enumerate() {
                 add(node, direction, f);
             }

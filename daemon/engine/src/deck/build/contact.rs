@@ -352,8 +352,27 @@ impl Builder<'_> {
             self.report.error(row.at, PAIR, message, "define it by faces, or exchange the surfaces");
             return false;
         }
+        if let SurfaceKind::Faces(faces) = &first.kind
+            && let Some(face) = faces.iter().find(|&&face| self.model.mesh.face_nodes(face).is_quadratic())
+        {
+            let mesh = &self.model.mesh;
+            let message = format!(
+                "the secondary surface {} has faces with midside nodes (face S{} of element {}, {}): in node-to-surface contact their corners stand for no area or a negative one",
+                first.name,
+                face.face + 1,
+                mesh.element_labels[face.element.index()],
+                mesh.elements.kind(face.element.index()).name()
+            );
+            self.report.error(
+                row.at,
+                PAIR,
+                message,
+                "exchange the surfaces, mesh this body with C3D4, C3D6 or C3D8, or list the nodes with TYPE=NODE and their area",
+            );
+            return false;
+        }
         let size = |kind: &SurfaceKind| match kind {
-            SurfaceKind::Faces(faces) => 4 * faces.len(),
+            SurfaceKind::Faces(faces) => faces.iter().map(|&face| self.model.mesh.face_nodes(face).len()).sum(),
             SurfaceKind::Nodes(nodes) => nodes.len(),
         };
         if !self.budget.take(size(&first.kind) + size(&second.kind), row.at, PAIR, self.report) {
@@ -382,7 +401,7 @@ impl Builder<'_> {
         let mesh = &self.model.mesh;
         let mut nodes = match &mesh.surfaces[surface.index()].kind {
             SurfaceKind::Nodes(nodes) => nodes.clone(),
-            SurfaceKind::Faces(faces) => faces.iter().flat_map(|&face| mesh.face_nodes(face)).collect(),
+            SurfaceKind::Faces(faces) => faces.iter().flat_map(|&face| mesh.face_nodes(face).to_vec()).collect(),
         };
         nodes.sort_unstable();
         nodes.dedup();

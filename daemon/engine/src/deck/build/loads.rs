@@ -105,6 +105,15 @@ impl Builder<'_> {
                 let magnitude = row.real(2, "pressure", None, self.report);
                 let (region, magnitude) = (region?, magnitude?);
                 let label = digit - b'0';
+                if let Some(message) = self.without_face(&region.members, label) {
+                    self.report.error(
+                        row.at,
+                        DLOAD,
+                        message,
+                        "give the pressure element set by element set, one per type",
+                    );
+                    return None;
+                }
                 let face = |&element: &ElementId| ElementFace { element, face: label - 1 };
                 let faces = region.members.iter().map(face).collect();
                 self.load(region.region, region.name, LoadKind::FacePressure { faces, label }, magnitude)

@@ -1,13 +1,13 @@
-//! Nodes and elements: labels to positions, repetitions, undefined nodes, inverted bricks.
+//! Nodes and elements: labels to positions, repetitions, undefined nodes, inverted elements.
 
 use rustc_hash::FxHashMap;
 
-use crate::model::{Dialect, Element, ElementId, ElementKind, Mesh, NodeId};
+use crate::model::{Dialect, ELEMENT_NODES_MAX, ElementId, ElementKind, ElementShape, Mesh, NodeId};
 
 use super::super::card::{Deck, ElementTable, NodeTable};
 use super::super::report::{At, Report};
 use super::names::Labels;
-use crate::element::brick::jacobian_min;
+use crate::element::{Coordinates, jacobian_min};
 
 const NODE: &str = "*NODE";
 const ELEMENT: &str = "*ELEMENT";
@@ -119,16 +119,15 @@ fn take_elements(
     mesh: &mut Mesh,
     report: &mut Report,
 ) -> (Rows, Vec<At>) {
-    let kind = match dialect {
-        Dialect::Abaqus => ElementKind::C3D8,
-        Dialect::Calculix => ElementKind::C3D8Full,
-    };
     let first = Labels::of(&table.labels);
     let mut positions = Vec::with_capacity(table.labels.len());
     let mut kept_at = Vec::with_capacity(table.labels.len());
-    mesh.elements.reserve_exact(table.labels.len());
+    mesh.elements.reserve_exact(table.labels.len(), table.nodes.len());
     mesh.element_labels.reserve_exact(table.labels.len());
-    for (row, (&label, corners)) in table.labels.iter().zip(&table.nodes).enumerate() {
+    let mut rest = table.nodes.as_slice();
+    for (row, (&label, &written)) in table.labels.iter().zip(&table.kinds).enumerate() {
+        let (labels, behind) = rest.split_at(written.node_count());
+        rest = behind;
         let at = table.at[row];
         let earlier = first.get(label).unwrap_or(row as u32) as usize;
         if earlier < row {
@@ -141,10 +140,11 @@ fn take_elements(
             positions.push(positions[earlier]);
             continue;
         }
-        match resolve_corners(label, corners, at, node_index, deck, mesh, report) {
+        let kind = meaning(written, dialect);
+        match resolve_nodes(label, kind, labels, at, node_index, deck, mesh, report) {
             Some(nodes) => {
                 positions.push(mesh.elements.len() as u32);
-                mesh.elements.push(Element { kind, nodes });
+                mesh.elements.push(kind, &nodes[..labels.len()]);
                 mesh.element_labels.push(label);
                 kept_at.push(at);
             }
@@ -158,47 +158,75 @@ fn take_elements(
     (Rows((!unchanged).then_some(positions)), kept_at)
 }
 
-fn resolve_corners(
+/// What a dialect means by an element type.
+fn meaning(written: ElementKind, dialect: Dialect) -> ElementKind {
+    match (written, dialect) {
+        (ElementKind::C3D8, Dialect::Calculix) => ElementKind::C3D8Full,
+        (kind, _) => kind,
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "one call, from the loop above")]
+fn resolve_nodes(
     label: u32,
-    corners: &[u32; 8],
+    kind: ElementKind,
+    labels: &[u32],
     at: At,
     node_index: &Labels,
     deck: &Deck,
     mesh: &Mesh,
     report: &mut Report,
-) -> Option<[NodeId; 8]> {
-    let mut nodes = [NodeId(0); 8];
-    for (node, &corner) in nodes.iter_mut().zip(corners) {
-        match node_index.get(corner) {
+) -> Option<[NodeId; ELEMENT_NODES_MAX]> {
+    let mut nodes = [NodeId(0); ELEMENT_NODES_MAX];
+    for (node, &wanted) in nodes.iter_mut().zip(labels) {
+        match node_index.get(wanted) {
             Some(position) => *node = NodeId(position),
             None => {
-                if !deck.incomplete && !deck.refused_nodes.contains(&corner) {
-                    let message = format!("element {label} uses node {corner}, which is not defined");
+                if !deck.incomplete && !deck.refused_nodes.contains(&wanted) {
+                    let message = format!("element {label} uses node {wanted}, which is not defined");
                     report.error(at, ELEMENT, message, "define the node, or correct the number");
                 }
                 return None;
             }
         }
     }
-    for i in 1..nodes.len() {
-        if nodes[..i].contains(&nodes[i]) {
-            let message = format!("element {label} uses node {} twice", corners[i]);
-            report.error(at, ELEMENT, message, "collapsed bricks are not solved: give eight different nodes");
+    for i in 1..labels.len() {
+        if labels[..i].contains(&labels[i]) {
+            let message = format!("element {label} uses node {} twice", labels[i]);
+            let remedy = format!(
+                "collapsed elements are not solved: give {} different nodes, or use C3D6 or C3D4",
+                labels.len()
+            );
+            report.error(at, ELEMENT, message, remedy);
             return None;
         }
     }
     // Positive wherever it is evaluated: coordinates are bounded, so it is never NaN.
-    let jacobian = jacobian_min(&nodes.map(|node| mesh.nodes[node.index()]));
+    let coordinates = Coordinates::of(nodes[..labels.len()].iter().map(|node| mesh.nodes[node.index()]));
+    let jacobian = jacobian_min(kind, &coordinates);
     if jacobian <= 0.0 {
         let message =
             format!("element {label} is inverted or distorted: its Jacobian is {jacobian:.3e} at an integration point");
-        report.error(
-            at,
-            ELEMENT,
-            message,
-            "list the bottom face anticlockwise seen from the top face, then the top face; check the coordinates",
-        );
+        report.error(at, ELEMENT, message, order_remedy(kind));
         return None;
     }
     Some(nodes)
+}
+
+/// How the nodes of an element are listed.
+fn order_remedy(kind: ElementKind) -> &'static str {
+    match kind.shape() {
+        ElementShape::Hexahedron8 | ElementShape::Wedge6 => {
+            "list the bottom face anticlockwise seen from the top face, then the top face; check the coordinates"
+        }
+        ElementShape::Hexahedron20 | ElementShape::Wedge15 => {
+            "list the corners of the bottom face anticlockwise seen from the top face, those of the top face, then the midside nodes of the bottom, the top and the sides; check the coordinates"
+        }
+        ElementShape::Tetrahedron4 => {
+            "list the first three nodes anticlockwise seen from the fourth; check the coordinates"
+        }
+        ElementShape::Tetrahedron10 => {
+            "list the first three corners anticlockwise seen from the fourth, then the midside nodes of 1-2, 2-3, 3-1, 1-4, 2-4, 3-4; check the coordinates"
+        }
+    }
 }

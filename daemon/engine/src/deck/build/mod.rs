@@ -145,8 +145,8 @@ impl Builder<'_> {
             }
         }
         let mut in_element = vec![false; self.model.mesh.nodes.len()];
-        for element in &self.model.mesh.elements {
-            element.nodes.iter().for_each(|node| in_element[node.index()] = true);
+        for (_, nodes) in self.model.mesh.elements.iter() {
+            nodes.iter().for_each(|node| in_element[node.index()] = true);
         }
         let loose: Vec<_> = (in_element.iter().zip(&self.model.mesh.node_labels))
             .filter(|(used, _)| !**used)

@@ -282,9 +282,10 @@ impl Builder<'_> {
         let Some(set) = self.element_sets.refer(name, at, "*NSET", self.report) else { return Vec::new() };
         let mesh = &self.model.mesh;
         let elements = &mesh.element_sets[set as usize].elements;
-        if !self.budget.take(8 * elements.len(), at, "*NSET", self.report) {
+        let nodes = elements.iter().flat_map(|element| mesh.elements.nodes(element.index()));
+        if !self.budget.take(nodes.clone().count(), at, "*NSET", self.report) {
             return Vec::new();
         }
-        elements.iter().flat_map(|element| mesh.elements[element.index()].nodes).map(|node| node.0).collect()
+        nodes.map(|node| node.0).collect()
     }
 }

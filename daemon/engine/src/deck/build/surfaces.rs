@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::model::{ElementFace, ElementId, Mesh, NodeId, Surface, SurfaceKind};
 
 use super::super::card::{Body, Card, Faces, Members};
+use super::super::members::FACE_REMEDY;
 use super::super::report::At;
 use super::Builder;
 use super::layout::Layout;
@@ -78,7 +79,13 @@ impl Builder<'_> {
         for &(label, face, at) in &members.labels {
             match self.element(label, at, SURFACE) {
                 Some(element) if face == 0 => exposed.push(element),
-                Some(element) => faces.push(ElementFace { element, face: face - 1 }),
+                Some(element) => match self.without_face(&[element], face) {
+                    None => faces.push(ElementFace { element, face: face - 1 }),
+                    Some(message) => {
+                        self.report.error(at, SURFACE, message, FACE_REMEDY);
+                        *sound = false;
+                    }
+                },
                 None => *sound = false,
             }
         }
@@ -93,7 +100,13 @@ impl Builder<'_> {
             }
             match *face {
                 0 => exposed.extend(elements),
-                face => faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 })),
+                face => match self.without_face(elements, face) {
+                    None => faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 })),
+                    Some(message) => {
+                        self.report.error(*at, SURFACE, message, FACE_REMEDY);
+                        *sound = false;
+                    }
+                },
             }
         }
         // The search for free faces looks at every element of the mesh.
@@ -107,14 +120,33 @@ impl Builder<'_> {
     }
 }
 
+impl Builder<'_> {
+    /// Says which of the elements has no such face, numbered from 1.
+    pub(super) fn without_face(&self, elements: &[ElementId], face: u8) -> Option<String> {
+        let mesh = &self.model.mesh;
+        let kind = |element: ElementId| mesh.elements.kind(element.index());
+        let element = *elements.iter().find(|&&element| usize::from(face) > kind(element).shape().faces().len())?;
+        Some(format!(
+            "element {} of type {} has {} faces and no face {face}",
+            mesh.element_labels[element.index()],
+            kind(element).name(),
+            kind(element).shape().faces().len()
+        ))
+    }
+}
+
 /// Faces of the elements that no other element of the mesh shares.
 fn free_faces(mesh: &Mesh, elements: &[ElementId]) -> Vec<ElementFace> {
+    // Corners tell a face; the fourth of a triangle is no node.
     let corners = |face: ElementFace| {
-        let mut corners = mesh.face_nodes(face);
+        let mut corners = [NodeId(u32::MAX); 4];
+        for (corner, &node) in corners.iter_mut().zip(mesh.face_nodes(face).corners()) {
+            *corner = node;
+        }
         corners.sort_unstable();
         corners
     };
-    let faces_of = |element: ElementId| (0..6).map(move |face| ElementFace { element, face });
+    let faces_of = |element: ElementId| mesh.elements.faces_of(element);
     let mut wanted: FxHashMap<[NodeId; 4], u32> = FxHashMap::default();
     for &element in elements {
         wanted.extend(faces_of(element).map(|face| (corners(face), 0)));

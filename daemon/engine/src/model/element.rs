@@ -1,0 +1,291 @@
+//! Element kinds, their shapes and faces, and the element table of a mesh.
+
+use super::{ElementFace, ElementId, NodeId};
+
+/// Most nodes that an element has.
+pub const ELEMENT_NODES_MAX: usize = 20;
+
+/// Most nodes that a face has.
+pub const FACE_NODES_MAX: usize = 8;
+
+/// Element kinds that can be solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementKind {
+    /// Eight-node brick, volumetric part selectively reduced (mean dilatation).
+    C3D8,
+    /// Eight-node brick, fully integrated: what CalculiX calls C3D8.
+    C3D8Full,
+    /// Eight-node brick with incompatible modes.
+    C3D8I,
+    /// Eight-node brick of uniform strain with hourglass stiffness.
+    C3D8R,
+    /// Four-node tetrahedron.
+    C3D4,
+    /// Six-node wedge.
+    C3D6,
+    /// Ten-node tetrahedron.
+    C3D10,
+    /// Fifteen-node wedge.
+    C3D15,
+    /// Twenty-node brick, fully integrated (3 x 3 x 3).
+    C3D20,
+    /// Twenty-node brick, reduced integration (2 x 2 x 2).
+    C3D20R,
+}
+
+/// Where the nodes and faces of an element are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementShape {
+    /// Tetrahedron of corners.
+    Tetrahedron4,
+    /// Tetrahedron with midside nodes.
+    Tetrahedron10,
+    /// Wedge of corners.
+    Wedge6,
+    /// Wedge with midside nodes.
+    Wedge15,
+    /// Hexahedron of corners.
+    Hexahedron8,
+    /// Hexahedron with midside nodes.
+    Hexahedron20,
+}
+
+impl ElementKind {
+    /// Every kind.
+    pub const ALL: [Self; 10] = [
+        Self::C3D8,
+        Self::C3D8Full,
+        Self::C3D8I,
+        Self::C3D8R,
+        Self::C3D4,
+        Self::C3D6,
+        Self::C3D10,
+        Self::C3D15,
+        Self::C3D20,
+        Self::C3D20R,
+    ];
+
+    /// Where its nodes and faces are.
+    pub const fn shape(self) -> ElementShape {
+        match self {
+            Self::C3D8 | Self::C3D8Full | Self::C3D8I | Self::C3D8R => ElementShape::Hexahedron8,
+            Self::C3D4 => ElementShape::Tetrahedron4,
+            Self::C3D6 => ElementShape::Wedge6,
+            Self::C3D10 => ElementShape::Tetrahedron10,
+            Self::C3D15 => ElementShape::Wedge15,
+            Self::C3D20 | Self::C3D20R => ElementShape::Hexahedron20,
+        }
+    }
+
+    /// Number of nodes.
+    pub const fn node_count(self) -> usize {
+        self.shape().node_count()
+    }
+
+    /// Name in a deck.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::C3D8 | Self::C3D8Full => "C3D8",
+            Self::C3D8I => "C3D8I",
+            Self::C3D8R => "C3D8R",
+            Self::C3D4 => "C3D4",
+            Self::C3D6 => "C3D6",
+            Self::C3D10 => "C3D10",
+            Self::C3D15 => "C3D15",
+            Self::C3D20 => "C3D20",
+            Self::C3D20R => "C3D20R",
+        }
+    }
+}
+
+/// Local nodes of the faces S1, S2, … of each shape, outward by the right-hand rule: corners, then midside nodes in the
+/// order of the edges that begin at the corners.
+const TETRAHEDRON4: &[&[u8]] = &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
+const TETRAHEDRON10: &[&[u8]] = &[&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[2, 0, 3, 6, 7, 9]];
+const WEDGE6: &[&[u8]] = &[&[0, 2, 1], &[3, 4, 5], &[0, 1, 4, 3], &[1, 2, 5, 4], &[2, 0, 3, 5]];
+const WEDGE15: &[&[u8]] = &[
+    &[0, 2, 1, 8, 7, 6],
+    &[3, 4, 5, 9, 10, 11],
+    &[0, 1, 4, 3, 6, 13, 9, 12],
+    &[1, 2, 5, 4, 7, 14, 10, 13],
+    &[2, 0, 3, 5, 8, 12, 11, 14],
+];
+const HEXAHEDRON8: &[&[u8]] =
+    &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
+const HEXAHEDRON20: &[&[u8]] = &[
+    &[0, 3, 2, 1, 11, 10, 9, 8],
+    &[4, 5, 6, 7, 12, 13, 14, 15],
+    &[0, 1, 5, 4, 8, 17, 12, 16],
+    &[1, 2, 6, 5, 9, 18, 13, 17],
+    &[2, 3, 7, 6, 10, 19, 14, 18],
+    &[3, 0, 4, 7, 11, 16, 15, 19],
+];
+
+impl ElementShape {
+    /// Number of nodes.
+    pub const fn node_count(self) -> usize {
+        match self {
+            Self::Tetrahedron4 => 4,
+            Self::Tetrahedron10 => 10,
+            Self::Wedge6 => 6,
+            Self::Wedge15 => 15,
+            Self::Hexahedron8 => 8,
+            Self::Hexahedron20 => 20,
+        }
+    }
+
+    /// Local nodes of the faces S1, S2, …, outward by the right-hand rule: corners, then midside nodes.
+    pub const fn faces(self) -> &'static [&'static [u8]] {
+        match self {
+            Self::Tetrahedron4 => TETRAHEDRON4,
+            Self::Tetrahedron10 => TETRAHEDRON10,
+            Self::Wedge6 => WEDGE6,
+            Self::Wedge15 => WEDGE15,
+            Self::Hexahedron8 => HEXAHEDRON8,
+            Self::Hexahedron20 => HEXAHEDRON20,
+        }
+    }
+}
+
+/// Nodes of a face: 3 or 4 corners, or 6 or 8 nodes with the midside nodes behind the corners.
+#[derive(Clone, Copy, Debug)]
+pub struct FaceNodes {
+    nodes: [NodeId; FACE_NODES_MAX],
+    count: u8,
+}
+
+impl FaceNodes {
+    /// The corners only.
+    pub fn corners(&self) -> &[NodeId] {
+        let corners = if self.count > 4 { self.count / 2 } else { self.count };
+        &self.nodes[..corners as usize]
+    }
+
+    /// Whether the face has midside nodes.
+    pub fn is_quadratic(&self) -> bool {
+        self.count > 4
+    }
+}
+
+impl std::ops::Deref for FaceNodes {
+    type Target = [NodeId];
+
+    fn deref(&self) -> &[NodeId] {
+        &self.nodes[..self.count as usize]
+    }
+}
+
+/// Elements of a mesh: a kind each, and all node lists in one array.
+#[derive(Clone, Debug, Default)]
+pub struct Elements {
+    kinds: Vec<ElementKind>,
+    /// End of each element's nodes in `nodes`.
+    ends: Vec<u32>,
+    nodes: Vec<NodeId>,
+}
+
+impl Elements {
+    /// Makes room for elements and their nodes.
+    pub fn reserve_exact(&mut self, elements: usize, nodes: usize) {
+        self.kinds.reserve_exact(elements);
+        self.ends.reserve_exact(elements);
+        self.nodes.reserve_exact(nodes);
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// Nodes of all elements, counted as often as they are named.
+    pub fn node_references(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Appends an element. The nodes are in the order of the manual, as many as the kind has.
+    pub fn push(&mut self, kind: ElementKind, nodes: &[NodeId]) {
+        debug_assert_eq!(nodes.len(), kind.node_count());
+        self.kinds.push(kind);
+        self.nodes.extend_from_slice(nodes);
+        self.ends.push(self.nodes.len() as u32);
+    }
+
+    /// Kind of an element by its position.
+    pub fn kind(&self, element: usize) -> ElementKind {
+        self.kinds[element]
+    }
+
+    /// Nodes of an element by its position, in the order of the manual.
+    pub fn nodes(&self, element: usize) -> &[NodeId] {
+        let start = element.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.nodes[start as usize..self.ends[element] as usize]
+    }
+
+    /// Kinds and nodes in order.
+    pub fn iter(&self) -> impl Iterator<Item = (ElementKind, &[NodeId])> {
+        (0..self.len()).map(|e| (self.kinds[e], self.nodes(e)))
+    }
+
+    /// Faces of an element, numbered from 0.
+    pub fn faces_of(&self, element: ElementId) -> impl Iterator<Item = ElementFace> + use<> {
+        let count = self.kind(element.index()).shape().faces().len() as u8;
+        (0..count).map(move |face| ElementFace { element, face })
+    }
+
+    /// Nodes of a face, outward by the right-hand rule: corners, then midside nodes.
+    pub fn face_nodes(&self, face: ElementFace) -> FaceNodes {
+        let nodes = self.nodes(face.element.index());
+        let local = self.kind(face.element.index()).shape().faces()[face.face as usize];
+        let mut out = FaceNodes { nodes: [NodeId(0); FACE_NODES_MAX], count: local.len() as u8 };
+        for (node, &a) in out.nodes.iter_mut().zip(local) {
+            *node = nodes[a as usize];
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elements_of_different_kinds_keep_their_nodes() {
+        let mut elements = Elements::default();
+        let ids = |range: std::ops::Range<u32>| range.map(NodeId).collect::<Vec<_>>();
+        elements.push(ElementKind::C3D4, &ids(0..4));
+        elements.push(ElementKind::C3D20R, &ids(4..24));
+        elements.push(ElementKind::C3D6, &ids(1..7));
+        assert_eq!((elements.len(), elements.node_references()), (3, 30));
+        assert_eq!(elements.nodes(0), ids(0..4));
+        assert_eq!(elements.nodes(1), ids(4..24));
+        assert_eq!(elements.nodes(2), ids(1..7));
+        let face = elements.face_nodes(ElementFace { element: ElementId(1), face: 5 });
+        assert_eq!(face.iter().map(|n| n.0 - 4).collect::<Vec<_>>(), [3, 0, 4, 7, 11, 16, 15, 19]);
+        assert_eq!((face.corners().len(), face.is_quadratic()), (4, true));
+        let face = elements.face_nodes(ElementFace { element: ElementId(2), face: 1 });
+        assert_eq!((face.len(), face.corners().len(), face.is_quadratic()), (3, 3, false));
+        assert_eq!(elements.faces_of(ElementId(2)).count(), 5);
+    }
+
+    #[test]
+    fn every_edge_belongs_to_two_faces_in_opposite_directions_with_one_midside_node() {
+        for kind in ElementKind::ALL {
+            let mut edges = std::collections::BTreeMap::new();
+            for face in kind.shape().faces() {
+                let corners = if face.len() > 4 { face.len() / 2 } else { face.len() };
+                for i in 0..corners {
+                    let middle = face.get(corners + i).copied();
+                    assert!(edges.insert((face[i], face[(i + 1) % corners]), middle).is_none(), "{kind:?}");
+                }
+            }
+            for (&(a, b), middle) in &edges {
+                assert_eq!(edges.get(&(b, a)), Some(middle), "{kind:?}: edge {a} {b}");
+            }
+        }
+    }
+}
