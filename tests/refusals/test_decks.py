@@ -68,10 +68,10 @@ REFUSALS = [
         "*STEP\n",
         "*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*STEP\n",
         "*EQUATION",
-        ("C3D8",),
+        ("solid elements",),
     ),
     Refusal(
-        "element that cannot be solved", "TYPE=C3D8, ELSET=UPPER", "TYPE=C3D20, ELSET=UPPER", "*ELEMENT", ("C3D20",)
+        "element that cannot be solved", "TYPE=C3D8, ELSET=UPPER", "TYPE=C3D27, ELSET=UPPER", "*ELEMENT", ("C3D27",)
     ),
     Refusal("no step", "*STEP\n", "** \n", "", ("*STEP",)),
 ]

@@ -101,6 +101,18 @@ CASES = [
         "1e-11",
     ),
     Case(
+        "elements",
+        "The solver shall find the uniform stress of a bar of distorted elements of every kind under pressure.",
+        "closed form, both dialects",
+        "1e-10",
+    ),
+    Case(
+        "gravity",
+        "The solver shall weigh a distorted box of elements of every kind.",
+        "density times volume times acceleration",
+        "1e-11",
+    ),
+    Case(
         "oracle",
         "The solver shall find the contact state that enumeration of all active sets finds.",
         "brute force on 500 seeded random decks",
