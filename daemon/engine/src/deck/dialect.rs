@@ -46,11 +46,17 @@ const DIFFERENCES: &[Difference] = &[
         "incompatible modes of its own, with a correction of shear",
         "in both dialects nine incompatible modes (Taylor, Beresford, Wilson) on the fully integrated brick",
     ),
-    departs(
+    follows(
         "*ELEMENT, TYPE=C3D8R",
-        "uniform strain; the kind and the stiffness of hourglass control come from *SECTION CONTROLS",
-        "uniform strain; hourglass stiffness in proportion to the first elastic constant",
-        "in both dialects uniform strain with the hourglass stiffness of Flanagan and Belytschko, coefficient 0.05",
+        "mean strain with an hourglass stiffness in proportion to 0.005 times the shear modulus",
+        "mean strain with an hourglass stiffness in proportion to 0.0005 times Young's modulus",
+        "as CalculiX",
+    ),
+    departs(
+        "*DLOAD on C3D6, GRAV on C3D6 and C3D20R",
+        "consistent with the shape functions",
+        "pressure on quadrilateral faces of C3D6 at one point; gravity at the points of the stiffness",
+        "consistent in both dialects: the resultants agree, and on undistorted elements the nodal loads do",
     ),
     follows(
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL",

@@ -16,6 +16,11 @@ impl Elasticity {
         Self { lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu: e / (2.0 * (1.0 + nu)) }
     }
 
+    /// Young's modulus [pressure].
+    pub fn youngs_modulus(self) -> f64 {
+        self.mu * (3.0 * self.lambda + 2.0 * self.mu) / (self.lambda + self.mu)
+    }
+
     /// Bulk modulus [pressure].
     pub fn kappa(self) -> f64 {
         self.lambda + 2.0 / 3.0 * self.mu

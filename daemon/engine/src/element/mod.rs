@@ -37,7 +37,14 @@ pub fn stiffness(kind: ElementKind, coordinates: &[[f64; 3]], elasticity: Elasti
         ElementKind::C3D8 => out.set(8, &brick(Volumetric::Mean)),
         ElementKind::C3D8Full => out.set(8, &brick(Volumetric::Local)),
         ElementKind::C3D8I => incompatible::stiffness(corners(coordinates), elasticity, out),
-        ElementKind::C3D8R => uniform_strain::stiffness(corners(coordinates), elasticity, out),
+        ElementKind::C3D8R => {
+            let resistance = uniform_strain::HOURGLASS * elasticity.mu;
+            uniform_strain::stiffness(corners(coordinates), elasticity, resistance, out);
+        }
+        ElementKind::C3D8RCalculix => {
+            let resistance = uniform_strain::HOURGLASS_CALCULIX * elasticity.youngs_modulus();
+            uniform_strain::stiffness(corners(coordinates), elasticity, resistance, out);
+        }
         _ => isoparametric::stiffness(table::of(kind), coordinates, elasticity, out),
     }
 }
@@ -49,7 +56,9 @@ pub fn stress(kind: ElementKind, coordinates: &[[f64; 3]], elasticity: Elasticit
         ElementKind::C3D8 => brick(Volumetric::Mean).to_vec(),
         ElementKind::C3D8Full => brick(Volumetric::Local).to_vec(),
         ElementKind::C3D8I => incompatible::stress(corners(coordinates), elasticity, u).to_vec(),
-        ElementKind::C3D8R => vec![uniform_strain::stress(corners(coordinates), elasticity, u)],
+        ElementKind::C3D8R | ElementKind::C3D8RCalculix => {
+            vec![uniform_strain::stress(corners(coordinates), elasticity, u)]
+        }
         _ => isoparametric::stress(table::of(kind), coordinates, elasticity, u),
     }
 }
@@ -68,9 +77,11 @@ pub fn extrapolate(kind: ElementKind, values: &[[f64; 6]]) -> Vec<[f64; 6]> {
 /// Volume that each node stands for: ∫ N_a dV [length³]. Negative at the corners of quadratic tetrahedra and bricks.
 pub fn nodal_volumes(kind: ElementKind, coordinates: &[[f64; 3]]) -> Vec<f64> {
     match kind {
-        ElementKind::C3D8 | ElementKind::C3D8Full | ElementKind::C3D8I | ElementKind::C3D8R => {
-            brick::nodal_volumes(corners(coordinates)).to_vec()
-        }
+        ElementKind::C3D8
+        | ElementKind::C3D8Full
+        | ElementKind::C3D8I
+        | ElementKind::C3D8R
+        | ElementKind::C3D8RCalculix => brick::nodal_volumes(corners(coordinates)).to_vec(),
         _ => isoparametric::nodal_volumes(table::of(kind), coordinates),
     }
 }
@@ -78,7 +89,9 @@ pub fn nodal_volumes(kind: ElementKind, coordinates: &[[f64; 3]]) -> Vec<f64> {
 /// Smallest det J over the integration points [length³]. Positive for a usable element.
 pub fn jacobian_min(kind: ElementKind, coordinates: &[[f64; 3]]) -> f64 {
     match kind {
-        ElementKind::C3D8 | ElementKind::C3D8Full | ElementKind::C3D8R => brick::jacobian_min(corners(coordinates)),
+        ElementKind::C3D8 | ElementKind::C3D8Full | ElementKind::C3D8R | ElementKind::C3D8RCalculix => {
+            brick::jacobian_min(corners(coordinates))
+        }
         // The incompatible modes use the Jacobian of the centre too.
         ElementKind::C3D8I => {
             let corners = corners(coordinates);

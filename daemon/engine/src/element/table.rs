@@ -51,7 +51,7 @@ impl Table {
             ElementKind::C3D8 | ElementKind::C3D8Full | ElementKind::C3D8I => {
                 (hexahedron::rule_8(), hexahedron::rule_8())
             }
-            ElementKind::C3D8R => (vec![([0.0; 3], 8.0)], hexahedron::rule_8()),
+            ElementKind::C3D8R | ElementKind::C3D8RCalculix => (vec![([0.0; 3], 8.0)], hexahedron::rule_8()),
             ElementKind::C3D20 => (hexahedron::rule_27(), hexahedron::rule_27()),
             ElementKind::C3D20R => (hexahedron::rule_8(), hexahedron::rule_27()),
         };
@@ -67,7 +67,7 @@ impl Table {
 /// Polynomials that the stresses of a kind are taken for.
 fn monomials(kind: ElementKind, [x, y, z]: [f64; 3]) -> Vec<f64> {
     match kind {
-        ElementKind::C3D4 | ElementKind::C3D8R => vec![1.0],
+        ElementKind::C3D4 | ElementKind::C3D8R | ElementKind::C3D8RCalculix => vec![1.0],
         ElementKind::C3D6 => vec![1.0, z],
         ElementKind::C3D10 => vec![1.0, x, y, z],
         ElementKind::C3D15 => vec![1.0, x, y, z, x * z, y * z],

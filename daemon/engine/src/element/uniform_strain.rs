@@ -4,18 +4,21 @@
 //! motions have no mean strain; they get the stiffness of Flanagan and Belytschko:
 //!
 //! ```text
-//! γ_αa = (Γ_αa − Σ_i (Σ_b Γ_αb x_bi) B_ai) / √8        orthogonal to every linear field
-//! K_ab += k Σ_α γ_αa γ_αb I,   k = HOURGLASS (λ + 2 μ) V Σ_a B_a · B_a / 3
+//! γ_αa = Γ_αa − Σ_i (Σ_b Γ_αb x_bi) B_ai        orthogonal to every linear field
+//! K_ab += k Σ_α γ_αa γ_αb I,   k = r V Σ_a B_a · B_a
 //! ```
 //!
-//! Source: Flanagan, Belytschko (1981), A uniform strain hexahedron and quadrilateral with orthogonal hourglass control.
+//! with r = HOURGLASS μ, or HOURGLASS_CALCULIX E as CalculiX has it. Source: Flanagan, Belytschko (1981), A uniform strain hexahedron and quadrilateral with orthogonal hourglass control.
 
 use super::brick::{CORNER, Corners, gauss_point, point};
 use super::elasticity::Elasticity;
 use super::matrix::{Stiffness, block_index};
 
-/// Part of the largest elastic stiffness of the element that resists hourglass motions.
-pub const HOURGLASS: f64 = 0.05;
+/// Part of the shear modulus that resists hourglass motions: the default of the stiffness method of Abaqus.
+pub const HOURGLASS: f64 = 0.005;
+
+/// Part of Young's modulus that resists hourglass motions in CalculiX.
+pub const HOURGLASS_CALCULIX: f64 = 0.0005;
 
 /// Mean gradients [1/length] and volume [length³].
 fn mean(corners: &Corners) -> ([[f64; 3]; 8], f64) {
@@ -39,17 +42,17 @@ fn hourglass(corners: &Corners, gradient: &[[f64; 3]; 8]) -> [[f64; 8]; 4] {
         let linear: [f64; 3] = std::array::from_fn(|i| base.iter().zip(corners).map(|(g, x)| g * x[i]).sum());
         std::array::from_fn(|a| {
             let along: f64 = linear.iter().zip(&gradient[a]).map(|(l, b)| l * b).sum();
-            (base[a] - along) / 8f64.sqrt()
+            base[a] - along
         })
     })
 }
 
-/// Stiffness with hourglass control.
-pub fn stiffness(corners: &Corners, elasticity: Elasticity, out: &mut Stiffness) {
+/// Stiffness with hourglass control of resistance r [pressure].
+pub fn stiffness(corners: &Corners, elasticity: Elasticity, resistance: f64, out: &mut Stiffness) {
     let (gradient, volume) = mean(corners);
     let gamma = hourglass(corners, &gradient);
     let size: f64 = gradient.as_flattened().iter().map(|b| b * b).sum();
-    let stiff = HOURGLASS * (elasticity.lambda + 2.0 * elasticity.mu) * volume * size / 3.0;
+    let stiff = resistance * volume * size;
     let blocks = out.clear(8);
     for a in 0..8 {
         for b in a..8 {

@@ -31,6 +31,8 @@ pub enum ElementKind {
     C3D20,
     /// Twenty-node brick, reduced integration (2 x 2 x 2).
     C3D20R,
+    /// C3D8R with the hourglass stiffness of CalculiX.
+    C3D8RCalculix,
 }
 
 /// Where the nodes and faces of an element are.
@@ -52,7 +54,7 @@ pub enum ElementShape {
 
 impl ElementKind {
     /// Every kind.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::C3D8,
         Self::C3D8Full,
         Self::C3D8I,
@@ -63,12 +65,13 @@ impl ElementKind {
         Self::C3D15,
         Self::C3D20,
         Self::C3D20R,
+        Self::C3D8RCalculix,
     ];
 
     /// Where its nodes and faces are.
     pub const fn shape(self) -> ElementShape {
         match self {
-            Self::C3D8 | Self::C3D8Full | Self::C3D8I | Self::C3D8R => ElementShape::Hexahedron8,
+            Self::C3D8 | Self::C3D8Full | Self::C3D8I | Self::C3D8R | Self::C3D8RCalculix => ElementShape::Hexahedron8,
             Self::C3D4 => ElementShape::Tetrahedron4,
             Self::C3D6 => ElementShape::Wedge6,
             Self::C3D10 => ElementShape::Tetrahedron10,
@@ -87,7 +90,7 @@ impl ElementKind {
         match self {
             Self::C3D8 | Self::C3D8Full => "C3D8",
             Self::C3D8I => "C3D8I",
-            Self::C3D8R => "C3D8R",
+            Self::C3D8R | Self::C3D8RCalculix => "C3D8R",
             Self::C3D4 => "C3D4",
             Self::C3D6 => "C3D6",
             Self::C3D10 => "C3D10",

@@ -162,6 +162,7 @@ fn take_elements(
 fn meaning(written: ElementKind, dialect: Dialect) -> ElementKind {
     match (written, dialect) {
         (ElementKind::C3D8, Dialect::Calculix) => ElementKind::C3D8Full,
+        (ElementKind::C3D8R, Dialect::Calculix) => ElementKind::C3D8RCalculix,
         (kind, _) => kind,
     }
 }
