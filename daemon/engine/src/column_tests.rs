@@ -272,6 +272,21 @@ fn before_the_first_increment_an_overlap_carries_nothing() {
 }
 
 #[test]
+fn an_input_beyond_all_measure_stops_and_leaves_the_state_usable() {
+    let mut s = simulation(exponential(), 0.08);
+    for huge in [1e160, -1e200, 1e300] {
+        s.set(0, huge).expect("finite");
+        let stopped = s.advance(0.05, &mut ()).expect("a legal target");
+        assert!(matches!(&stopped, AdvanceOutcome::Stopped { .. }), "{huge:e}: {stopped:?}");
+        let before = s.history().energies;
+        assert!(before.total.is_finite() && before.external_work.is_finite());
+    }
+    s.set(0, -0.01).expect("finite");
+    assert_eq!(s.advance(0.05, &mut ()), Ok(AdvanceOutcome::Reached));
+    assert!(s.history().energies.total.is_finite());
+}
+
+#[test]
 fn nonsense_from_outside_is_refused() {
     let mut s = simulation(NormalBehavior::Hard, 0.08);
     assert!(matches!(s.set(0, f64::NAN), Err(SetError::NotFinite { .. })));

@@ -1,3 +1,4 @@
 //! Contact geometry: search, projection, tributary areas.
 
 pub mod points;
+mod search;

@@ -1,17 +1,17 @@
-//! Contact points: each secondary node with its tributary area and its anchor on the primary surface.
+//! Contact points: each secondary node with its tributary area and its anchors on the primary surface.
 //!
-//! Small sliding: the anchor, the normal and the tangents are those of the undeformed bodies. The anchor is the
-//! closest point of the primary surface that faces the secondary node; a node that hangs over the edge of the surface
-//! by no more than EXTENSION ZONE of `*CONTACT PAIR` times the size of the face is taken along.
+//! Small sliding: anchor, normal and tangents are those of the undeformed bodies. How anchors are found: `search.rs`.
 
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{PointDistance, RTree};
 use rustc_hash::FxHashMap;
 
+use super::search::{PrimarySurface, Query};
 use crate::diagnostic::Diagnostic;
-use crate::element::quad::{Projection, cross, dot, norm, sub};
+use crate::element::quad::{cross, dot, norm};
 use crate::element::{Coordinates, face};
-use crate::model::{ElementFace, FACE_NODES_MAX, FaceNodes, Mesh, Model, NodeId, SurfaceKind};
+use crate::model::{FACE_NODES_MAX, FaceNodes, Mesh, Model, NodeId, SurfaceKind};
+
+/// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
+const OVERLAP_MAX: f64 = 0.5;
 
 /// One node-to-surface constraint.
 #[derive(Clone, Debug)]
@@ -57,82 +57,6 @@ impl ContactPoint {
     }
 }
 
-/// Axis-aligned box of a primary face with the position of the face in the surface.
-type Box3 = GeomWithData<Rectangle<[f64; 3]>, u32>;
-
-struct Primary {
-    faces: Vec<ElementFace>,
-    coordinates: Vec<Coordinates>,
-    sizes: Vec<f64>,
-    tree: RTree<Box3>,
-}
-
-impl Primary {
-    fn new(mesh: &Mesh, faces: &[ElementFace]) -> Self {
-        let coordinates: Vec<_> =
-            faces.iter().map(|&f| Coordinates::of(mesh.face_nodes(f).iter().map(|n| mesh.nodes[n.index()]))).collect();
-        let sizes = coordinates.iter().map(|c| face::nodal_areas(c).iter().sum::<f64>().sqrt()).collect();
-        let boxes = coordinates
-            .iter()
-            .zip(0u32..)
-            .map(|(c, index)| {
-                let bound = |pick: fn(f64, f64) -> f64| {
-                    c.iter().skip(1).fold(c[0], |b, x| std::array::from_fn(|i| pick(b[i], x[i])))
-                };
-                let (mut low, mut high) = (bound(f64::min), bound(f64::max));
-                // A curved face reaches out of the box of its nodes.
-                let bulge = face::bulge(c.len());
-                for (l, h) in low.iter_mut().zip(&mut high).filter(|_| bulge > 0.0) {
-                    let reach = bulge * (*h - *l);
-                    (*l, *h) = (*l - reach, *h + reach);
-                }
-                GeomWithData::new(Rectangle::from_corners(low, high), index)
-            })
-            .collect();
-        Self { faces: faces.to_vec(), coordinates, sizes, tree: RTree::bulk_load(boxes) }
-    }
-
-    /// Anchor of a secondary node: the nearest face that faces it, with the normals of equally near faces averaged.
-    fn anchor(
-        &self,
-        mesh: &Mesh,
-        node: NodeId,
-        facing: Option<[f64; 3]>,
-        extension_zone: f64,
-    ) -> Option<(u32, Projection)> {
-        let position = mesh.nodes[node.index()];
-        let mut found: Vec<(u32, Projection)> = Vec::new();
-        let mut nearest = f64::INFINITY;
-        for candidate in self.tree.nearest_neighbor_iter(position) {
-            // A tie is decided within a hair of the face size, so that a foot on a shared edge sees both faces.
-            let index = candidate.data as usize;
-            let hair = 1e-9 * self.sizes[index];
-            if candidate.distance_2(&position).sqrt() > nearest + hair {
-                break;
-            }
-            if mesh.face_nodes(self.faces[index]).contains(&node) {
-                continue;
-            }
-            let Some(projection) = face::project(&self.coordinates[index], position) else { continue };
-            let averted = facing.is_some_and(|outward| dot(outward, projection.normal) >= 0.0);
-            if averted || projection.overhang > extension_zone * self.sizes[index] + hair {
-                continue;
-            }
-            nearest = nearest.min(projection.distance);
-            found.push((candidate.data, projection));
-        }
-        found.retain(|(face, p)| p.distance <= nearest + 1e-9 * self.sizes[*face as usize]);
-        found.sort_by_key(|&(face, _)| face);
-        let sum = found.iter().fold([0.0; 3], |s, (_, p)| std::array::from_fn(|i| s[i] + p.normal[i]));
-        let (face, mut projection) = found.into_iter().next()?;
-        let length = norm(sum);
-        if length > 0.0 {
-            projection.normal = sum.map(|x| x / length);
-        }
-        Some((face, projection))
-    }
-}
-
 /// Secondary nodes of a surface with area and outward normal (none for a node-based surface), by node.
 fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<(NodeId, f64, Option<[f64; 3]>)> {
     match kind {
@@ -168,7 +92,11 @@ fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
     [first, cross(normal, first)]
 }
 
-/// Contact points of all pairs, pair by pair, by node; and warnings about secondary nodes that found no partner.
+/// Contact points of all pairs, pair by pair, by node; and warnings about secondary nodes that found no partner or start deep
+/// inside one.
+///
+/// A node with one anchor carries its whole tributary area. A node in a corner carries against each anchor what its faces show in
+/// that direction: the component of its area vector.
 pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
     let mesh = &model.mesh;
     let (mut points, mut warnings) = (Vec::new(), Vec::new());
@@ -176,43 +104,64 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         let SurfaceKind::Faces(faces) = &mesh.surfaces[pair.primary.index()].kind else {
             unreachable!("the deck reader admits element-based primary surfaces only")
         };
-        let primary = Primary::new(mesh, faces);
+        let primary = PrimarySurface::new(mesh, faces);
         let node_area = model.interactions[pair.interaction.index()].node_area;
         let secondaries = secondary_nodes(mesh, &mesh.surfaces[pair.secondary.index()].kind, node_area);
         let total = secondaries.len();
-        let mut lost = Vec::new();
-        for (node, area, outward) in secondaries {
-            let Some((found, p)) = primary.anchor(mesh, node, outward, pair.extension_zone) else {
-                lost.push(mesh.node_labels[node.index()]);
-                continue;
-            };
-            points.push(ContactPoint {
-                pair: index,
-                node,
-                area,
-                normal: p.normal,
-                tangents: tangents(p.normal),
-                primary: mesh.face_nodes(primary.faces[found as usize]),
-                weights: face::shape(primary.coordinates[found as usize].len(), p.natural),
-                clearance: dot(p.normal, sub(mesh.nodes[node.index()], p.foot)),
-                face_size: primary.sizes[found as usize],
+        let (mut lost, mut deep) = (Vec::new(), Vec::new());
+        for (node, area, vector) in secondaries {
+            let label = mesh.node_labels[node.index()];
+            let outward = vector.map(|v| {
+                let length = norm(v);
+                v.map(|x| x / length)
             });
+            let anchors = primary.anchors(mesh, Query { node, outward, extension_zone: pair.extension_zone });
+            if anchors.is_empty() {
+                lost.push(label);
+            }
+            let several = anchors.len() > 1;
+            for anchor in anchors {
+                let face_size = primary.size(anchor.face);
+                if anchor.clearance < -OVERLAP_MAX * face_size {
+                    deep.push(label);
+                }
+                let shown = vector.filter(|_| several).map(|v| dot(v, anchor.normal).abs());
+                points.push(ContactPoint {
+                    pair: index,
+                    node,
+                    area: shown.unwrap_or(area),
+                    normal: anchor.normal,
+                    tangents: tangents(anchor.normal),
+                    primary: primary.face_nodes(anchor.face),
+                    weights: primary.weights(&anchor),
+                    clearance: anchor.clearance,
+                    face_size,
+                });
+            }
         }
-        if !lost.is_empty() {
-            let shown: Vec<String> = lost.iter().take(8).map(u32::to_string).collect();
-            let more = if lost.len() > 8 { ", …" } else { "" };
-            warnings.push(Diagnostic::warning(
-                pair.place.clone(),
-                "*CONTACT PAIR",
-                format!(
-                    "pair {}: {} of {total} secondary nodes have no face of the primary surface opposite them and can never touch: {}{more}",
+        let mut warn = |labels: &[u32], what: &str, remedy: &str| {
+            if !labels.is_empty() {
+                let shown: Vec<String> = labels.iter().take(8).map(u32::to_string).collect();
+                let more = if labels.len() > 8 { ", …" } else { "" };
+                let message = format!(
+                    "pair {}: {} of {total} secondary nodes {what}: {}{more}",
                     pair.name,
-                    lost.len(),
+                    labels.len(),
                     shown.join(", ")
-                ),
-                "extend the primary surface if these nodes should be in contact",
-            ));
-        }
+                );
+                warnings.push(Diagnostic::warning(pair.place.clone(), "*CONTACT PAIR", message, remedy));
+            }
+        };
+        warn(
+            &lost,
+            "have no face of the primary surface opposite them and take no part in contact",
+            "extend the primary surface if these nodes should be in contact",
+        );
+        warn(
+            &deep,
+            "start more than half a face inside the primary surface",
+            "check the geometry and the sides of the surfaces: contact will push these nodes out",
+        );
     }
     (points, warnings)
 }

@@ -1,7 +1,20 @@
 //! Faces of 3, 4, 6 and 8 nodes as carriers of pressure and of contact. Four-node faces are done in `quad.rs`.
 
-use super::quad::{self, Projection, cross, dot, norm, sub};
+use super::quad::{self, cross, dot, norm, sub};
 use crate::model::FACE_NODES_MAX;
+
+/// Closest point of the face to a position.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection {
+    /// Natural coordinates, within [-1, 1]².
+    pub natural: [f64; 2],
+    /// The closest point itself [length].
+    pub foot: [f64; 3],
+    /// Distance from the foot to the position [length].
+    pub distance: f64,
+    /// Unit outward normal of the face at the foot.
+    pub normal: [f64; 3],
+}
 
 /// Shape functions of a face at one point, with first and second derivatives; zero beyond the node count.
 #[derive(Clone, Copy)]
@@ -182,9 +195,6 @@ pub fn bulge(count: usize) -> f64 {
 /// Projects a position onto the face: the closest point, found by Newton's method on the squared distance inside the face and
 /// along its edges. `None` for a face without area.
 pub fn project(nodes: &[[f64; 3]], position: [f64; 3]) -> Option<Projection> {
-    if let Ok(corners) = nodes.try_into() {
-        return quad::project(corners, position);
-    }
     let distance = |natural: [f64; 2]| norm(sub(position, place(nodes, natural).at));
     let natural = match inside(nodes, position) {
         Some(natural) => natural,
@@ -198,10 +208,24 @@ pub fn project(nodes: &[[f64; 3]], position: [f64; 3]) -> Option<Projection> {
         return None;
     }
     let normal = area.map(|x| x / length);
-    let r = sub(position, foot.at);
-    let along = dot(r, normal);
-    let overhang = norm([r[0] - along * normal[0], r[1] - along * normal[1], r[2] - along * normal[2]]);
-    Some(Projection { natural, foot: foot.at, distance: distance(natural), normal, overhang })
+    Some(Projection { natural, foot: foot.at, distance: distance(natural), normal })
+}
+
+/// Number of corners of a face by its node count.
+pub fn corner_count(count: usize) -> usize {
+    corners(count).len()
+}
+
+/// Edges of a face on which natural coordinates lie; edge k goes from corner k to the next.
+pub fn edges_at(count: usize, [x, y]: [f64; 2], tolerance: f64) -> Vec<usize> {
+    let distances: &[f64] =
+        if corner_count(count) == 3 { &[y, 1.0 - x - y, x] } else { &[1.0 + y, 1.0 - x, 1.0 - y, 1.0 + x] };
+    (0..distances.len()).filter(|&k| distances[k] <= tolerance).collect()
+}
+
+/// Corner that two edges of a face share.
+pub fn shared_corner(count: usize, first: usize, second: usize) -> usize {
+    if (first + 1) % corner_count(count) == second { second } else { first }
 }
 
 /// Stationary minimum of the distance inside the face, if Newton's method ends in one.
@@ -310,6 +334,15 @@ mod tests {
 
     const TRI3: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.1], [0.3, 1.5, 0.0]];
 
+    /// How far a position lies beside the normal through its foot.
+    fn overhang(p: &Projection, position: [f64; 3]) -> f64 {
+        let r = sub(position, p.foot);
+        let along = dot(r, p.normal);
+        norm(std::array::from_fn(|i| r[i] - along * p.normal[i]))
+    }
+
+    const QUAD4: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [2.0, 0.1, 0.2], [2.2, 1.0, -0.1], [0.1, 1.2, 0.3]];
+
     /// A face with curved edges and a bulge.
     fn curved(count: usize) -> Vec<[f64; 3]> {
         let corners = corners(count);
@@ -379,8 +412,12 @@ mod tests {
 
     #[test]
     fn the_foot_is_a_minimum_of_the_distance() {
-        for count in [3, 6, 8] {
-            let nodes = if count == 3 { TRI3.to_vec() } else { curved(count) };
+        for count in [3, 4, 6, 8] {
+            let nodes = match count {
+                3 => TRI3.to_vec(),
+                4 => QUAD4.to_vec(),
+                _ => curved(count),
+            };
             let triangle = corners(count).len() == 3;
             for target in [
                 [0.5, 0.3, 0.4],
@@ -406,8 +443,28 @@ mod tests {
                 let interior =
                     if triangle { x > 0.01 && y > 0.01 && x + y < 0.99 } else { x.abs().max(y.abs()) < 0.99 };
                 if interior {
-                    assert!(p.overhang < 1e-9, "{count} {target:?}: {}", p.overhang);
+                    let beside = overhang(&p, target);
+                    assert!(beside < 1e-9, "{count} {target:?}: {beside}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_foot_on_an_edge_of_a_skewed_face_is_not_taken_for_its_corner() {
+        let face = [[-1.5, -0.25, 0.0], [-0.5, -0.25, 0.0], [1.5, 0.25, 0.0], [0.5, 0.25, 0.0]];
+        let p = project(&face, [1.2, 0.31, 0.0]).expect("the face has area");
+        assert!((p.foot[0] - 1.2).abs() < 1e-12 && (p.distance - 0.06).abs() < 1e-12, "{p:?}");
+        assert_eq!(edges_at(4, p.natural, 1e-9), vec![2]);
+    }
+
+    #[test]
+    fn edges_meet_in_the_corner_that_both_name() {
+        for (count, corners) in [(3, TRIANGLE.to_vec()), (4, SQUARE.to_vec())] {
+            for (k, &natural) in corners.iter().enumerate() {
+                let edges = edges_at(count, natural, 1e-9);
+                assert_eq!(edges.len(), 2);
+                assert_eq!(shared_corner(count, edges[0], edges[1]), k, "{count}");
             }
         }
     }

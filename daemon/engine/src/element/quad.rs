@@ -74,72 +74,11 @@ pub fn nodal_areas(corners: &QuadCorners) -> [f64; 4] {
     out
 }
 
-/// Closest point of the face to a position.
-#[derive(Clone, Copy, Debug)]
-pub struct Projection {
-    /// Natural coordinates, within [-1, 1]².
-    pub natural: [f64; 2],
-    /// The closest point itself [length].
-    pub foot: [f64; 3],
-    /// Distance from the foot to the position [length].
-    pub distance: f64,
-    /// Unit outward normal of the face at the foot.
-    pub normal: [f64; 3],
-    /// How far the position lies outside the face, measured along it [length]; 0 above the face.
-    pub overhang: f64,
-}
-
-/// Projects a position onto the face: Newton on the squared distance, kept within the face edge by edge.
-///
-/// Returns `None` for a face without area.
-pub fn project(corners: &QuadCorners, position: [f64; 3]) -> Option<Projection> {
-    let mut natural = [0.0; 2];
-    // Gauss-Newton with projection onto the square; a bilinear face needs a handful of steps.
-    for _ in 0..50 {
-        let (x, t, s) = map(corners, natural);
-        let r = sub(position, x);
-        let (a, b, c) = (dot(t, t), dot(t, s), dot(s, s));
-        let det = a * c - b * b;
-        if det <= 1e-24 * (a * c).max(f64::MIN_POSITIVE) {
-            return None;
-        }
-        let (p, q) = (dot(r, t), dot(r, s));
-        let mut next = [natural[0] + (c * p - b * q) / det, natural[1] + (a * q - b * p) / det];
-        // On a violated bound, minimise along it: clamp that coordinate and re-solve for the other.
-        for k in 0..2 {
-            if next[k].abs() > 1.0 {
-                next[k] = next[k].clamp(-1.0, 1.0);
-                let fixed = next[k] - natural[k];
-                let other = 1 - k;
-                let (diag, rhs) = if k == 0 { (c, q) } else { (a, p) };
-                next[other] = (natural[other] + (rhs - b * fixed) / diag).clamp(-1.0, 1.0);
-            }
-        }
-        let change = (next[0] - natural[0]).abs().max((next[1] - natural[1]).abs());
-        natural = next;
-        if change < 1e-14 {
-            break;
-        }
-    }
-    let (foot, t, s) = map(corners, natural);
-    let area = cross(t, s);
-    let length = norm(area);
-    if length == 0.0 {
-        return None;
-    }
-    let normal = area.map(|x| x / length);
-    let r = sub(position, foot);
-    let along = dot(r, normal);
-    let overhang = norm([r[0] - along * normal[0], r[1] - along * normal[1], r[2] - along * normal[2]]);
-    Some(Projection { natural, foot, distance: norm(r), normal, overhang })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const UNIT: QuadCorners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    const WARPED: QuadCorners = [[0.0, 0.0, 0.0], [2.0, 0.1, 0.2], [2.2, 1.0, -0.1], [0.1, 1.2, 0.3]];
 
     #[test]
     fn areas_of_a_rectangle_are_quarters() {
@@ -149,40 +88,5 @@ mod tests {
         for v in nodal_area_vectors(&UNIT) {
             assert!((v[2] - 0.5).abs() < 1e-15 && v[0] == 0.0 && v[1] == 0.0);
         }
-    }
-
-    #[test]
-    fn a_point_above_the_face_projects_straight_down() {
-        let p = project(&UNIT, [0.3, 0.9, 0.7]).expect("face has area");
-        assert!((p.foot[0] - 0.3).abs() < 1e-14 && (p.foot[1] - 0.9).abs() < 1e-14);
-        assert!((p.distance - 0.7).abs() < 1e-14 && p.overhang < 1e-14);
-        assert_eq!(p.normal, [0.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn a_point_beside_the_face_projects_onto_its_nearest_edge_or_corner() {
-        let edge = project(&UNIT, [2.5, 0.25, 0.0]).expect("face has area");
-        assert!((edge.foot[0] - 2.0).abs() < 1e-14 && (edge.foot[1] - 0.25).abs() < 1e-14);
-        assert!((edge.overhang - 0.5).abs() < 1e-14);
-        let corner = project(&UNIT, [-1.0, -1.0, 0.0]).expect("face has area");
-        assert!((corner.overhang - 2f64.sqrt()).abs() < 1e-14);
-    }
-
-    #[test]
-    fn the_foot_on_a_warped_face_is_a_minimum_of_the_distance() {
-        for target in [[0.7, 0.5, 0.4], [1.9, 1.3, -0.5], [-0.4, 0.6, 0.2], [1.0, 0.5, 2.0]] {
-            let p = project(&WARPED, target).expect("face has area");
-            for i in -20..=20 {
-                for j in -20..=20 {
-                    let (x, _, _) = map(&WARPED, [f64::from(i) / 20.0, f64::from(j) / 20.0]);
-                    assert!(norm(sub(target, x)) >= p.distance - 1e-12);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_face_without_area_has_no_projection() {
-        assert!(project(&[[0.0; 3]; 4], [1.0; 3]).is_none());
     }
 }

@@ -170,8 +170,24 @@ impl Simulation {
             self.work.coefficients = coefficients;
             return Err(Failure::Slid(slid));
         }
+        if !self.is_finite(&coefficients) {
+            self.work.coefficients = coefficients;
+            return Err(Failure::Overflow);
+        }
         let changes = self.accept(time, coefficients);
         Ok((counts, changes))
+    }
+
+    /// Whether every number that the solution in the work space leads to is one: products of huge inputs are not.
+    fn is_finite(&self, coefficients: &[f64]) -> bool {
+        let (prepared, work) = (&self.prepared, &self.work);
+        let strain = prepared.condensed.strain_energy(coefficients, &work.forces, &work.relief);
+        let contact = prepared.contact.energy(&work.overclosures, &work.closed);
+        let conjugates = (0..prepared.real_columns).all(|column| {
+            let conjugate = prepared.condensed.conjugate(column, coefficients, &work.forces);
+            (conjugate * coefficients[column]).is_finite()
+        });
+        conjugates && strain.is_finite() && contact.is_finite() && self.state.external_work.is_finite()
     }
 
     /// Makes the solution in the work space the state.
@@ -300,12 +316,13 @@ fn slid_by(first: f64, second: f64) -> f64 {
 enum Failure {
     Solve(SolveFailure),
     Slid(Vec<u32>),
+    Overflow,
 }
 
 impl Failure {
-    /// A smaller increment cannot help a point that slides: the deck is beyond the formulation.
+    /// A smaller increment cannot help a point that slides or an input beyond all measure.
     fn is_final(&self) -> bool {
-        matches!(self, Failure::Slid(_))
+        matches!(self, Failure::Slid(_) | Failure::Overflow)
     }
 
     fn describe(&self, simulation: &Simulation) -> String {
@@ -329,6 +346,9 @@ impl Failure {
         };
         let after = format!("after total time {}", simulation.time());
         match self {
+            Failure::Overflow => {
+                format!("{after}: the solution leaves the range of numbers; an input is too large for this model")
+            }
             Failure::Slid(points) => format!(
                 "{after}: a secondary node slides beyond half a face of the primary surface, which small sliding does not cover: node {}",
                 list(points)

@@ -196,7 +196,7 @@ impl ContactSolver {
         }
         let scale = self.force_scale();
         let unsettled = (0..n).filter(|&i| {
-            closed[i] != self.was_closed[i] || !point_is_balanced(system, i, free, forces, overclosures[i], scale)
+            closed[i] != self.was_closed[i] || !self.point_is_balanced(system, i, free, forces, overclosures[i], scale)
         });
         Err(SolveFailure::NotConverged { points: unsettled.map(|i| i as u32).collect() })
     }
@@ -407,41 +407,47 @@ impl ContactSolver {
 
     fn is_balanced(&self, system: &ContactSystem, free: &[f64], forces: &[f64], overclosures: &[f64]) -> bool {
         let scale = self.force_scale();
-        (0..system.points.len()).all(|i| point_is_balanced(system, i, free, forces, overclosures[i], scale))
+        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, forces, overclosures[i], scale))
     }
 
     /// Whether the end of the present step satisfies the laws.
     fn trial_is_balanced(&self, system: &ContactSystem, free: &[f64]) -> bool {
         let scale = self.force_scale();
         let overclosure = |i: usize| free[i] - self.relief_trial[i];
-        (0..system.points.len()).all(|i| point_is_balanced(system, i, free, &self.trial, overclosure(i), scale))
+        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, &self.trial, overclosure(i), scale))
     }
 
     /// Largest force of the model solution.
     fn force_scale(&self) -> f64 {
         self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()))
     }
-}
 
-/// Whether the force of a softened point is that of its law at an overclosure. Hard points are settled by the model.
-fn point_is_balanced(
-    system: &ContactSystem,
-    i: usize,
-    free: &[f64],
-    forces: &[f64],
-    overclosure: f64,
-    scale: f64,
-) -> bool {
-    let point = &system.points[i];
-    let NormalBehavior::Softened(law) = &system.behaviors[point.behavior] else { return true };
-    let at = law.evaluate(overclosure);
-    let residual = (forces[i] - point.area * at.pressure).abs();
-    if residual <= FORCE_TOLERANCE * scale {
-        return true;
+    /// Whether the force of a softened point is that of its law at an overclosure. Hard points are settled by the model.
+    fn point_is_balanced(
+        &self,
+        system: &ContactSystem,
+        i: usize,
+        free: &[f64],
+        forces: &[f64],
+        overclosure: f64,
+        scale: f64,
+    ) -> bool {
+        let point = &system.points[i];
+        let NormalBehavior::Softened(law) = &system.behaviors[point.behavior] else { return true };
+        let at = law.evaluate(overclosure);
+        let own = system.compliance.column(i)[i];
+        if !self.is_active[i] && at.stiffness * point.area * own <= NEGLIGIBLE_STIFFNESS && own > 0.0 {
+            // Left out of the model because its force cannot matter.
+            return true;
+        }
+        let residual = (forces[i] - point.area * at.pressure).abs();
+        if residual <= FORCE_TOLERANCE * scale {
+            return true;
+        }
+        // The overclosure is a sum whose terms may cancel: what its rounding does to the force cannot be asked for.
+        let terms: f64 = system.compliance.column(i).iter().zip(forces).map(|(w, f)| (w * f).abs()).sum();
+        residual <= 16.0 * f64::EPSILON * (free[i].abs() + terms) * at.stiffness * point.area
     }
-    // The overclosure is a sum whose terms may cancel: what its rounding does to the force cannot be asked for.
-    let terms: f64 = system.compliance.column(i).iter().zip(forces).map(|(w, f)| (w * f).abs()).sum();
-    residual <= 16.0 * f64::EPSILON * (free[i].abs() + terms) * at.stiffness * point.area
 }
 
 #[cfg(test)]

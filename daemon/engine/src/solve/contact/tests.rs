@@ -210,3 +210,24 @@ fn a_solve_that_starts_at_or_beside_the_solution_stays_there() {
         }
     }
 }
+
+#[test]
+fn a_stiff_law_is_nearly_hard_and_a_negligible_one_nothing() {
+    let mut numbers = Numbers(13);
+    for case in 0..60 {
+        let n = 1 + case % 7;
+        let w = compliance(&mut numbers, n, n + 3);
+        let free: Vec<f64> = (0..n).map(|_| 0.01 * numbers.next()).collect();
+        let hard = solve(&system(w.clone(), vec![NormalBehavior::Hard], |_| 0), &free).0;
+        for slope in [1e10, 1e-40, 1e-300] {
+            let law = PressureOverclosure::Linear(Linear::new(slope).expect("valid"));
+            let (forces, _, result) = solve(&system(w.clone(), vec![NormalBehavior::Softened(law)], |_| 0), &free);
+            result.unwrap_or_else(|e| panic!("case {case}, slope {slope:e}: {e:?}"));
+            let scale = hard.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+            for (force, limit) in forces.iter().zip(&hard) {
+                let expected = if slope > 1.0 { *limit } else { 0.0 };
+                assert!((force - expected).abs() <= 1e-6 * scale, "case {case}, slope {slope:e}: {force} {expected}");
+            }
+        }
+    }
+}
