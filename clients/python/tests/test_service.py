@@ -132,19 +132,24 @@ def test_how_long_a_session_is_idle_is_told(client, deck):
 
 
 def test_frames_arrive_and_end_with_the_session(client, deck):
+    """Frames are live: on a busy machine some may be left out, which their numbers show, but none is wrong."""
     session = client.open(deck)
     with session.frames(timeout=10) as outputs, session.frames("CPRESS", timeout=10) as fields:
-        steps = [session.step(i / 4, frames=["CPRESS"]) for i in range(1, 5)]
-        field = session.field("CPRESS")
+        expected, pressures = {}, {}
+        for i in range(1, 5):
+            step = session.step(i / 4, frames=["CPRESS"])
+            expected[step.time] = step.vector
+            pressures[step.time] = session.field("CPRESS")
         session.close()
         received = list(outputs)
-        assert [f.number for f in received] == list(range(1, len(received) + 1))
-        assert received[-1].time == 1.0 and received[-1].values.tobytes() == steps[-1].vector.tobytes()
+        assert received
+        numbers = [frame.number for frame in received]
+        assert numbers == sorted(set(numbers))
+        for frame in received:
+            assert frame.values.tobytes() == expected[frame.time].tobytes()
         for frame in fields:
-            if frame.time == 1.0:
-                break
-        np.testing.assert_array_equal(frame.labels, field.labels)
-        np.testing.assert_array_equal(frame.values, field.values)
+            np.testing.assert_array_equal(frame.labels, pressures[frame.time].labels)
+            np.testing.assert_array_equal(frame.values, pressures[frame.time].values)
 
 
 def test_waiting_for_a_frame_is_bounded(client, deck):

@@ -95,6 +95,8 @@ struct Entry {
     status: Arc<Status>,
     label: String,
     token: String,
+    /// Fingerprint of the request that made the session.
+    print: u64,
 }
 
 #[derive(Default)]
@@ -140,13 +142,18 @@ impl Registry {
         Self { sessions: Mutex::default(), prefix, sessions_max, queue }
     }
 
-    /// Makes a session, or hands the query to the one that its token made. A refused query comes back with the fault.
-    pub fn open(&self, label: &str, token: &str, call: &mut Option<Call>) -> Result<Opening, Fault> {
+    /// Makes a session, or hands the query to the one that its token made. A refused query comes back with the fault; so does one
+    /// whose token made a session of another request.
+    pub fn open(&self, label: &str, token: &str, print: u64, call: &mut Option<Call>) -> Result<Opening, Fault> {
         let mut sessions = self.lock();
         if sessions.draining {
             return Err(shutting_down());
         }
         if let Some(entry) = sessions.open.values().find(|e| !token.is_empty() && e.token == token) {
+            if entry.print != print {
+                let text = format!("the token {token:?} has opened a session from another request; choose a new one");
+                return Err(Fault::new(FaultCode::BadRequest, text));
+            }
             let Some(query) = call.take() else { return Ok(Opening::Forwarded) };
             return match entry.queue.try_send(Command::OpenedAgain(query)) {
                 Ok(()) => Ok(Opening::Forwarded),
@@ -170,7 +177,8 @@ impl Registry {
         let (sender, queue) = mpsc::channel(self.queue as usize);
         let status = Arc::new(Status::default());
         status.update(true, 1, 0.0);
-        let entry = Entry { queue: sender, status: status.clone(), label: label.to_owned(), token: token.to_owned() };
+        let entry =
+            Entry { queue: sender, status: status.clone(), label: label.to_owned(), token: token.to_owned(), print };
         sessions.open.insert(number, entry);
         Ok(Opening::New(Registered { number, id: format!("{}-{number}", self.prefix), queue, status }))
     }
@@ -282,7 +290,7 @@ mod tests {
     use super::*;
 
     fn open(registry: &Registry, token: &str) -> Result<Opening, Fault> {
-        registry.open("label", token, &mut None)
+        registry.open("label", token, 1, &mut None)
     }
 
     fn registered(opening: Result<Opening, Fault>) -> Registered {
@@ -310,6 +318,8 @@ mod tests {
         let registry = Registry::new("ab".into(), 2, 4);
         let _first = registered(open(&registry, "t"));
         assert!(matches!(open(&registry, "t"), Ok(Opening::Forwarded)));
+        let other = registry.open("label", "t", 2, &mut None);
+        assert_eq!(other.err().map(|f| f.code), Some(FaultCode::BadRequest), "another request under the same token");
         assert_eq!(registry.summaries().len(), 1);
     }
 

@@ -14,7 +14,7 @@ use super::Shared;
 use super::convert;
 use super::registry::{Command, Opening, Registered, shutting_down, unknown_session};
 use super::reply::Call;
-use super::work::{Surroundings, Work};
+use super::work::{Surroundings, Work, fingerprint};
 
 /// Stack of a session thread; factorisations of large models recurse.
 const STACK_BYTES: usize = 16 << 20;
@@ -44,7 +44,9 @@ fn open(shared: &Arc<Shared>, call: Call) {
         Err(fault) => return call.fail(&fault),
     };
     let mut waiting = Some(call);
-    let registered = match shared.registry.open(&request.label, &request.token, &mut waiting) {
+    let opening = fingerprint(&request)
+        .and_then(|print| shared.registry.open(&request.label, &request.token, print, &mut waiting));
+    let registered = match opening {
         Ok(Opening::New(registered)) => registered,
         Ok(Opening::Forwarded) => return,
         Err(fault) => return waiting.into_iter().for_each(|call| call.fail(&fault)),

@@ -374,7 +374,7 @@ fn difference(before: &Counts, after: &Counts) -> Counts {
 }
 
 /// Of the request's canonical bytes: the same whether it came as JSON or postcard.
-fn fingerprint<M: Message>(request: &M) -> Result<u64, Fault> {
+pub fn fingerprint<M: Message>(request: &M) -> Result<u64, Fault> {
     let bytes = codec::encode(request, Format::Postcard)?;
     Ok(BuildHasherDefault::<DefaultHasher>::default().hash_one((M::NAME, bytes)))
 }
