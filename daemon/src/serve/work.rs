@@ -1,5 +1,6 @@
 //! What a session does with its `Simulation`: one method per verb.
 
+use std::collections::BTreeSet;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -45,6 +46,8 @@ pub struct Work {
     ledger: Ledger,
     around: Surroundings,
     frames_sent: u64,
+    /// Fields that frames were asked for: each is a stream that ends with the session.
+    streams: BTreeSet<String>,
 }
 
 impl Work {
@@ -55,7 +58,8 @@ impl Work {
             simulation.set_magnitude(input, value).map_err(|e| convert::set_error(&e))?;
         }
         let ledger = Ledger::new(around.limits.replies_kept);
-        let mut work = Self { model, simulation, ledger, around, frames_sent: 0 };
+        let streams = BTreeSet::from([OUTPUTS_FRAME.to_owned()]);
+        let mut work = Self { model, simulation, ledger, around, frames_sent: 0, streams };
         let (simulation, mut watch) = work.watched(0, &[]);
         let outcome = simulation.initialize(&mut watch);
         match outcome {
@@ -97,7 +101,9 @@ impl Work {
 
     /// Ends the frames.
     pub fn end(self) {
-        self.around.frames.end(self.frame_key(OUTPUTS_FRAME));
+        for stream in &self.streams {
+            self.around.frames.end(self.frame_key(stream));
+        }
     }
 
     pub fn ports(&self) -> Ports {
@@ -117,6 +123,7 @@ impl Work {
         for (input, value) in inputs {
             self.simulation.set(input, value).map_err(|e| convert::set_error(&e))?;
         }
+        self.streams.extend(request.frames.iter().cloned());
         let before = total(&self.simulation);
         let (simulation, mut watch) = self.watched(request.sequence, &request.frames);
         let outcome = simulation.advance(request.time, &mut watch);
