@@ -87,6 +87,9 @@ def against_calculix(folder, decks, repetitions, ccx):
         job = f"{kind}{size}"
         deck = folder / f"{job}.inp"
         generate_deck.generate([kind, size, deck])
+        # CalculiX loses contact of the cylinder under SMALL SLIDING (its force is a third too small), and solves less for it.
+        # Its finite sliding meets ours; we read the deck alike either way.
+        deck.write_text(deck.read_text().replace(", SMALL SLIDING", ""))
         ours, theirs = {"calculix": Usage(), "abaqus": Usage()}, Usage()
         for _ in range(repetitions):
             for dialect, usage in ours.items():
