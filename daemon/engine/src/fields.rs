@@ -1,6 +1,7 @@
 //! Fields: displacements, reactions and stresses of the whole mesh, recovered by one solve.
 
-use crate::element::{self, Coordinates};
+use crate::element::{self, Coordinates, connector};
+use crate::model::{Connector, ElementId};
 use crate::simulation::{ContactStatus, Field, FieldError, NodalSolution, Simulation};
 use crate::solve::assembly::coordinates;
 use crate::solve::columns::Column;
@@ -76,9 +77,12 @@ impl Simulation {
     }
 
     /// Stress at the integration points of one element.
-    pub fn element_stress(&self, solution: &NodalSolution, element: crate::model::ElementId) -> ElementStress {
+    pub fn element_stress(&self, solution: &NodalSolution, element: ElementId) -> ElementStress {
         let mesh = &self.prepared.model.mesh;
         let nodes = mesh.elements.nodes(element.index());
+        if let Some(&section) = mesh.connectors.get(&element) {
+            return self.connector_stress(solution, element, section);
+        }
         element::stress(
             mesh.elements.kind(element.index()),
             &coordinates(mesh, element.0),
@@ -87,13 +91,28 @@ impl Simulation {
         )
     }
 
+    /// A bar has one stress, a spring gives its force instead, a mass has nothing.
+    fn connector_stress(&self, solution: &NodalSolution, element: ElementId, section: Connector) -> ElementStress {
+        let mesh = &self.prepared.model.mesh;
+        let u = Coordinates::of(mesh.elements.nodes(element.index()).iter().map(|n| solution.displacement[n.index()]));
+        let material = mesh.element_materials[element.index()];
+        let youngs_modulus = self.prepared.elasticities.get(material.index()).map_or(0.0, |e| e.youngs_modulus());
+        let kind = mesh.elements.kind(element.index());
+        let force = connector::force(kind, &coordinates(mesh, element.0), section, youngs_modulus, &u);
+        match section {
+            Connector::Bar { area } => vec![[force / area, 0.0, 0.0, 0.0, 0.0, 0.0]],
+            Connector::Spring { .. } => vec![[force, 0.0, 0.0, 0.0, 0.0, 0.0]],
+            Connector::Mass { .. } => Vec::new(),
+        }
+    }
+
     /// Stress at the nodes (11, 22, 33, 12, 13, 23): extrapolated from the integration points and averaged over
-    /// the elements at each node; zero at nodes without elements.
+    /// the solids at each node; zero at nodes without solids.
     pub fn nodal_stress(&self, solution: &NodalSolution) -> Vec<[f64; 6]> {
         let mesh = &self.prepared.model.mesh;
         let mut sum = vec![[0.0; 6]; mesh.nodes.len()];
         let mut count = vec![0u32; mesh.nodes.len()];
-        for (e, (kind, nodes)) in mesh.elements.iter().enumerate() {
+        for (e, (kind, nodes)) in mesh.elements.iter().enumerate().filter(|(_, (kind, _))| kind.is_solid()) {
             let stress = self.element_stress(solution, crate::model::ElementId(e as u32));
             for (node, s) in nodes.iter().zip(element::extrapolate(kind, &stress)) {
                 count[node.index()] += 1;

@@ -44,6 +44,12 @@ pub fn fingerprint(model: &Model) -> u64 {
     }
     let mut text = |part: std::fmt::Arguments<'_>| hash.write_fmt(part).expect("hashing never fails");
     text(format_args!("{:?}{:?}{:?}", mesh.node_sets, mesh.element_sets, mesh.surfaces));
+    let mut connectors: Vec<_> = mesh.connectors.iter().collect();
+    connectors.sort_by_key(|(element, _)| **element);
+    text(format_args!("{connectors:?}"));
+    for equation in &model.equations {
+        text(format_args!("{:?}", equation.terms));
+    }
     text(format_args!("{:?}{:?}{:?}", model.materials, model.interactions, model.amplitudes));
     for pair in &model.pairs {
         text(format_args!("{:?}{:?}{:?}{:?}", pair.name, pair.secondary, pair.primary, pair.interaction));

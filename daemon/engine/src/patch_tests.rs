@@ -72,7 +72,7 @@ fn patch(kind: ElementKind) -> Model {
 #[test]
 fn a_distorted_patch_finds_the_uniform_stress() {
     let expected = Elasticity::new(210.0, 0.3).stress(&GRADIENT);
-    for kind in ElementKind::ALL {
+    for kind in ElementKind::SOLIDS {
         let model = patch(kind);
         let nodes = model.mesh.nodes.clone();
         let prepared = match PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}) {

@@ -85,7 +85,7 @@ const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20
 
 /// Kind of a type in upper case, as Abaqus means it.
 fn element_kind(name: &str) -> Option<ElementKind> {
-    ElementKind::ALL.into_iter().find(|kind| kind.name() == name)
+    ElementKind::SOLIDS.into_iter().find(|kind| kind.name() == name)
 }
 
 fn element_remedy(kind: ElementKind) -> String {

@@ -157,7 +157,7 @@ fn error(kind: ElementKind, n: usize) -> f64 {
 
 #[test]
 fn displacements_converge_at_the_rate_of_the_kind() {
-    for kind in ElementKind::ALL {
+    for kind in ElementKind::SOLIDS {
         let quadratic = kind.node_count() > 8;
         let (n, rate_min) = if quadratic { (2, 2.75) } else { (4, 1.8) };
         let (coarse, fine) = (error(kind, n), error(kind, 2 * n));

@@ -3,6 +3,7 @@
 
 pub mod basis;
 pub mod brick;
+pub mod connector;
 #[cfg(test)]
 mod convergence_tests;
 mod elasticity;

@@ -33,6 +33,16 @@ pub enum ElementKind {
     C3D20R,
     /// C3D8R with the hourglass stiffness of CalculiX.
     C3D8RCalculix,
+    /// Bar between two nodes.
+    T3D2,
+    /// Spring along the line between two nodes.
+    SpringA,
+    /// Spring between a direction of a node and the ground.
+    Spring1,
+    /// Spring between a direction of one node and a direction of another.
+    Spring2,
+    /// Point mass.
+    Mass,
 }
 
 /// Where the nodes and faces of an element are.
@@ -50,11 +60,37 @@ pub enum ElementShape {
     Hexahedron8,
     /// Hexahedron with midside nodes.
     Hexahedron20,
+    /// Line between two nodes; no faces.
+    Line2,
+    /// One node; no faces.
+    Point1,
+}
+
+/// What a section says of a connector: an element that is not a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Connector {
+    /// T3D2: `*SOLID SECTION` with a cross-section; the material is that of the element.
+    Bar {
+        /// Cross-section area \[length²\], positive.
+        area: f64,
+    },
+    /// `*SPRING`, linear.
+    Spring {
+        /// Force per length, not negative.
+        stiffness: f64,
+        /// Directions (0..3) at the first and second node; SPRINGA ignores them, SPRING1 uses the first.
+        directions: [u8; 2],
+    },
+    /// `*MASS`.
+    Mass {
+        /// Mass, not negative.
+        mass: f64,
+    },
 }
 
 impl ElementKind {
-    /// Every kind.
-    pub const ALL: [Self; 11] = [
+    /// Every solid kind.
+    pub const SOLIDS: [Self; 11] = [
         Self::C3D8,
         Self::C3D8Full,
         Self::C3D8I,
@@ -77,12 +113,19 @@ impl ElementKind {
             Self::C3D10 => ElementShape::Tetrahedron10,
             Self::C3D15 => ElementShape::Wedge15,
             Self::C3D20 | Self::C3D20R => ElementShape::Hexahedron20,
+            Self::T3D2 | Self::SpringA | Self::Spring2 => ElementShape::Line2,
+            Self::Spring1 | Self::Mass => ElementShape::Point1,
         }
     }
 
     /// Number of nodes.
     pub const fn node_count(self) -> usize {
         self.shape().node_count()
+    }
+
+    /// Whether it is a solid: it has faces, a volume and stresses in all components.
+    pub const fn is_solid(self) -> bool {
+        !matches!(self.shape(), ElementShape::Line2 | ElementShape::Point1)
     }
 
     /// Name in a deck.
@@ -97,6 +140,11 @@ impl ElementKind {
             Self::C3D15 => "C3D15",
             Self::C3D20 => "C3D20",
             Self::C3D20R => "C3D20R",
+            Self::T3D2 => "T3D2",
+            Self::SpringA => "SPRINGA",
+            Self::Spring1 => "SPRING1",
+            Self::Spring2 => "SPRING2",
+            Self::Mass => "MASS",
         }
     }
 }
@@ -134,6 +182,8 @@ impl ElementShape {
             Self::Wedge15 => 15,
             Self::Hexahedron8 => 8,
             Self::Hexahedron20 => 20,
+            Self::Line2 => 2,
+            Self::Point1 => 1,
         }
     }
 
@@ -146,6 +196,7 @@ impl ElementShape {
             Self::Wedge15 => WEDGE15,
             Self::Hexahedron8 => HEXAHEDRON8,
             Self::Hexahedron20 => HEXAHEDRON20,
+            Self::Line2 | Self::Point1 => &[],
         }
     }
 }
@@ -277,7 +328,7 @@ mod tests {
 
     #[test]
     fn every_edge_belongs_to_two_faces_in_opposite_directions_with_one_midside_node() {
-        for kind in ElementKind::ALL {
+        for kind in ElementKind::SOLIDS {
             let mut edges = std::collections::BTreeMap::new();
             for face in kind.shape().faces() {
                 let corners = if face.len() > 4 { face.len() / 2 } else { face.len() };

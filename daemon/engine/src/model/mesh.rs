@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{Elements, FaceNodes};
+use super::{Connector, Elements, FaceNodes};
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -39,6 +39,11 @@ id!(
     /// Position of a material in [`super::Model::materials`].
     MaterialId
 );
+impl MaterialId {
+    /// Of an element that has no material.
+    pub const NONE: Self = Self(u32::MAX);
+}
+
 id!(
     /// Position of an interaction in [`super::Model::interactions`].
     InteractionId
@@ -63,8 +68,10 @@ pub struct Mesh {
     pub element_labels: Vec<u32>,
     /// Element of each label.
     pub element_of_label: FxHashMap<u32, ElementId>,
-    /// Material of each element, from the sections.
+    /// Material of each element, from the sections; [`MaterialId::NONE`] for springs and masses.
     pub element_materials: Vec<MaterialId>,
+    /// Section of each element that is not a solid.
+    pub connectors: FxHashMap<ElementId, Connector>,
     /// Node sets, in order of first definition. Members ascending, without repetition.
     pub node_sets: Vec<NodeSet>,
     /// Element sets, in order of first definition. Members ascending, without repetition.

@@ -41,6 +41,8 @@ pub struct Model {
     pub interactions: Vec<SurfaceInteraction>,
     /// Contact pairs, in order of definition.
     pub pairs: Vec<ContactPair>,
+    /// Linear constraints between displacements, in order of definition.
+    pub equations: Vec<Equation>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
     /// Boundary conditions of the model part (before the first step): all values are zero. Lines that name single
@@ -97,6 +99,15 @@ pub struct ContactPair {
     /// Part of a face's size by which a secondary node may hang over the edge of the primary surface; 0.1 unless given.
     pub extension_zone: f64,
     /// Where the pair was defined, for diagnostics.
+    pub place: crate::diagnostic::Place,
+}
+
+/// `*EQUATION`: Σ coefficient · displacement = 0. The first term is the dependent one: its direction is eliminated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equation {
+    /// Node, direction (0..3) and coefficient; the first coefficient is not zero, no direction comes twice.
+    pub terms: Vec<(NodeId, u8, f64)>,
+    /// The line, for diagnostics.
     pub place: crate::diagnostic::Place,
 }
 

@@ -20,6 +20,8 @@ fn cell(shape: ElementShape) -> (u8, Option<&'static [usize]>) {
         ElementShape::Wedge15 => (26, Some(&[0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13])),
         ElementShape::Hexahedron8 => (12, None),
         ElementShape::Hexahedron20 => (25, None),
+        ElementShape::Line2 => (3, None),
+        ElementShape::Point1 => (1, None),
     }
 }
 

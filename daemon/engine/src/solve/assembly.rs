@@ -1,8 +1,8 @@
 //! Stiffness matrix of one body on its free degrees of freedom, lower triangle by columns, in elimination order.
 
 use super::numbering::NodeGraph;
-use crate::element::{self, Coordinates, Elasticity, Stiffness};
-use crate::model::{Mesh, Model};
+use crate::element::{self, Coordinates, Elasticity, Stiffness, connector};
+use crate::model::{ElementId, Mesh, Model};
 
 /// Symmetric matrix: lower triangle, column by column, rows ascending.
 pub struct LowerMatrix {
@@ -41,7 +41,13 @@ pub fn element_stiffness(model: &Model, elasticities: &[Elasticity], element: u3
     let mesh = &model.mesh;
     let material = mesh.element_materials[element as usize];
     let kind = mesh.elements.kind(element as usize);
-    element::stiffness(kind, &coordinates(mesh, element), elasticities[material.index()], out);
+    match mesh.connectors.get(&ElementId(element)) {
+        None => element::stiffness(kind, &coordinates(mesh, element), elasticities[material.index()], out),
+        Some(&section) => {
+            let youngs_modulus = elasticities.get(material.index()).map_or(0.0, |e| e.youngs_modulus());
+            connector::stiffness(kind, &coordinates(mesh, element), section, youngs_modulus, out);
+        }
+    }
 }
 
 /// Numbering that assembly needs of a body.
