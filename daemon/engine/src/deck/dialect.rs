@@ -107,6 +107,12 @@ const DIFFERENCES: &[Difference] = &[
         "the acceleration is the magnitude times the vector, whatever its length",
         "as CalculiX",
     ),
+    follows(
+        "*RESTART, WRITE, FREQUENCY=n",
+        "a snapshot every n increments and at the end of the step",
+        "a snapshot at the end of every n-th step",
+        "as CalculiX",
+    ),
     departs(
         "*CONTACT FILE, *CONTACT PRINT: COPEN",
         "clearance, positive when open",

@@ -326,7 +326,6 @@ pub const OTHER: &[Keyword] = &[
     other("*USER DEFINED FIELD", NO_STATE),
     other("*USER OUTPUT VARIABLES", NO_STATE),
     other("*CONTROLS", CONTROLS),
-    other("*RESTART", CONTROLS),
     other("*SOLVER CONTROLS", CONTROLS),
     other("*CONTACT RESPONSE", OUTPUT),
     other("*CONTOUR INTEGRAL", OUTPUT),

@@ -9,6 +9,7 @@ const STATICS_ONLY: &str = "only static steps are solved";
 const OUTPUT_DEFAULT: &str = "results are written at every increment that FREQUENCY selects";
 const OUTPUT_FIXED: &str = "the layout of the result files is fixed";
 const SMALL_MOTION: &str = "displacements are small, so loads keep their directions";
+const SNAPSHOTS: &str = "snapshots are written at the increments that FREQUENCY selects and at the end of the step";
 const LOAD_SIMPLE: &str = "give the load as plain values per set";
 
 /// Keywords that describe steps.
@@ -253,4 +254,22 @@ pub const STEPS: &[Keyword] = &[
             P::ignored("MODE LIST", STATICS_ONLY),
         ],
     ),
+    Keyword {
+        placement: Anywhere,
+        ..Keyword::output(
+            "*RESTART",
+            Forbidden,
+            &[
+                P::flag("WRITE"),
+                P::value("FREQUENCY"),
+                P::flag("OVERLAY"),
+                P::refused("READ", "name the snapshot on the command line: overclosure run DECK --restart FILE"),
+                P::silent("STEP"),
+                P::silent("INC"),
+                P::silent("END STEP"),
+                P::ignored("NUMBER INTERVAL", SNAPSHOTS),
+                P::ignored("TIME MARKS", SNAPSHOTS),
+            ],
+        )
+    },
 ];

@@ -144,6 +144,26 @@ pub struct OutputRequests {
     pub elements: Vec<ElementRequest>,
     /// `*CONTACT PRINT`, `*CONTACT FILE`, `*CONTACT OUTPUT`.
     pub contacts: Vec<ContactRequest>,
+    /// `*RESTART, WRITE`: snapshots from which a run can go on.
+    pub restart: Option<RestartRequest>,
+}
+
+/// When snapshots are written within a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RestartFrequency {
+    /// Every so many increments (at least 1), counted from the start of the step; and at the end of the step.
+    Increments(u32),
+    /// At the end of the step only.
+    StepEnd,
+}
+
+/// Request for snapshots in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RestartRequest {
+    /// When.
+    pub frequency: RestartFrequency,
+    /// `OVERLAY`: only the latest snapshot is kept.
+    pub overlay: bool,
 }
 
 /// Where a request wants its values.

@@ -2,4 +2,5 @@
 
 mod base;
 mod damage;
+mod restart;
 mod rules;

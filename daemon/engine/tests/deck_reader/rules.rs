@@ -528,7 +528,7 @@ fn output_requests_are_read() {
     );
     assert_eq!(output.elements[0].variables, ["S"]);
     assert_eq!(output.contacts.len(), 3);
-    assert_eq!(found.len(), 2, "{}", listing(&found));
+    assert_eq!(found.len(), 1, "{}", listing(&found));
     warns(&with("*END STEP", "*NODE FILE\n*END STEP"), "*NODE FILE", "names no variables");
     warns(&with("*NODE PRINT, ", "*NODE PRINT, COLOUR=RED, "), "*NODE PRINT", "there is no parameter COLOUR");
     refuses(&with("NSET=TOP, TOTALS", "NSET=TIP, TOTALS"), "*NODE PRINT", "no node set TIP");

@@ -95,7 +95,7 @@ impl<'d> Layout<'d> {
             }
         } else if card.keyword.placement == Placement::Step {
             report.error(card.at, name, "the keyword stands outside a step", "move it between *STEP and *END STEP");
-        } else if !self.steps.is_empty() && (model_only || name == "*BOUNDARY") {
+        } else if !self.steps.is_empty() && (model_only || matches!(name, "*BOUNDARY" | "*RESTART")) {
             report.error(
                 card.at,
                 name,

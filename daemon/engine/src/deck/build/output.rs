@@ -1,6 +1,9 @@
 //! Output requests. They hold from step to step until a step asks anew for the same kind.
 
-use crate::model::{ContactRequest, ElementRequest, NodeRequest, OutputRequests, OutputTarget, SetId, Totals};
+use crate::model::{
+    ContactRequest, Dialect, ElementRequest, NodeRequest, OutputRequests, OutputTarget, RestartFrequency,
+    RestartRequest, SetId, Totals,
+};
 
 use super::super::card::Card;
 use super::super::lex::{fields, key};
@@ -23,6 +26,17 @@ pub struct Requests {
     nodes: Vec<(Family, NodeRequest)>,
     elements: Vec<(Family, ElementRequest)>,
     contacts: Vec<(Family, ContactRequest)>,
+    snapshots: Option<Snapshots>,
+}
+
+/// The `*RESTART, WRITE` in force.
+#[derive(Clone, Copy)]
+struct Snapshots {
+    /// Every how many increments, or every how many steps.
+    frequency: u32,
+    overlay: bool,
+    /// Steps since the request, this one included.
+    steps: u32,
 }
 
 /// What is asked for, by the second word of the keyword.
@@ -78,11 +92,12 @@ struct Database {
 
 impl Requests {
     /// All requests in force.
-    pub fn all(&self) -> OutputRequests {
+    pub fn all(&self, dialect: Dialect) -> OutputRequests {
         OutputRequests {
             nodes: self.nodes.iter().map(|(_, request)| request.clone()).collect(),
             elements: self.elements.iter().map(|(_, request)| request.clone()).collect(),
             contacts: self.contacts.iter().map(|(_, request)| request.clone()).collect(),
+            restart: self.snapshots.and_then(|snapshots| snapshots.in_step(dialect)),
         }
     }
 
@@ -100,9 +115,42 @@ impl Requests {
     }
 }
 
+impl Snapshots {
+    /// What the request means in this step: Abaqus counts increments, CalculiX counts steps.
+    fn in_step(self, dialect: Dialect) -> Option<RestartRequest> {
+        let frequency = match dialect {
+            Dialect::Abaqus => RestartFrequency::Increments(self.frequency),
+            Dialect::Calculix if self.steps.is_multiple_of(self.frequency) => RestartFrequency::StepEnd,
+            Dialect::Calculix => return None,
+        };
+        Some(RestartRequest { frequency, overlay: self.overlay })
+    }
+}
+
 impl Builder<'_> {
+    /// Takes a `*RESTART` into the requests in force.
+    pub(super) fn restart_request(&mut self, card: &Card, requests: &mut Requests) {
+        if card.faulty {
+            return;
+        }
+        if !card.parameters.has("WRITE") {
+            let remedy = "write *RESTART, WRITE; to go on from a snapshot: overclosure run DECK --restart FILE";
+            self.report.error(card.at, card.keyword.name, "parameter WRITE is missing", remedy);
+            return;
+        }
+        let frequency = self.frequency(card);
+        let overlay = card.parameters.has("OVERLAY");
+        requests.snapshots = (frequency > 0).then_some(Snapshots { frequency, overlay, steps: 0 });
+    }
+
     /// Takes the requests of a step into those in force.
     pub(super) fn output_requests(&mut self, step: &StepCards<'_>, requests: &mut Requests) {
+        for card in step.cards.iter().filter(|card| card.keyword.name == "*RESTART") {
+            self.restart_request(card, requests);
+        }
+        if let Some(snapshots) = &mut requests.snapshots {
+            snapshots.steps += 1;
+        }
         let mut database = None;
         let mut database_begun = false;
         let mut begun: Vec<(Family, Subject)> = Vec::new();

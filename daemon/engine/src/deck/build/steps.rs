@@ -23,6 +23,9 @@ impl Builder<'_> {
     pub(super) fn build_steps(&mut self, layout: &Layout<'_>) {
         let mut names = FxHashSet::default();
         let mut requests = Requests::default();
+        for card in layout.model.iter().filter(|card| card.keyword.name == "*RESTART") {
+            self.restart_request(card, &mut requests);
+        }
         for (position, cards) in layout.steps.iter().enumerate() {
             let opening = cards.opening;
             let name = match opening.parameters.value("NAME") {
@@ -70,7 +73,7 @@ impl Builder<'_> {
                 boundaries,
                 loads,
                 loads_removed,
-                output: requests.all(),
+                output: requests.all(self.model.dialect),
                 place: self.map.place(opening.at),
             });
         }
