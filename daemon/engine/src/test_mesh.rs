@@ -18,9 +18,7 @@ fn parts(shape: ElementShape) -> &'static [&'static [usize]] {
     match shape {
         ElementShape::Hexahedron8 | ElementShape::Hexahedron20 => &[&[0, 1, 2, 3, 4, 5, 6, 7]],
         ElementShape::Wedge6 | ElementShape::Wedge15 => &[&[0, 1, 3, 4, 5, 7], &[1, 2, 3, 5, 6, 7]],
-        _ => {
-            &[&[0, 1, 2, 6], &[0, 2, 3, 6], &[0, 3, 7, 6], &[0, 7, 4, 6], &[0, 4, 5, 6], &[0, 5, 1, 6]]
-        }
+        _ => &[&[0, 1, 2, 6], &[0, 2, 3, 6], &[0, 3, 7, 6], &[0, 7, 4, 6], &[0, 4, 5, 6], &[0, 5, 1, 6]],
     }
 }
 
