@@ -8,7 +8,8 @@ import numpy as np
 
 import support
 
-from .decks import random_deck, text
+from .deck import text
+from .decks import random_deck
 from .solution import Oracle
 
 # Beyond this the small-sliding formulation may stop, as it should; the draw is replaced.

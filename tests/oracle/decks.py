@@ -1,46 +1,14 @@
-"""Seeded random small decks: the model as numbers for the oracle, and the same model as deck text for the solver."""
-
-from dataclasses import dataclass, field
+"""Seeded random small decks of well-held bodies."""
 
 import numpy as np
 
 from . import fe
+from .deck import Deck, Pair, primary_corners
 from .enumeration import hard, linear, tabular
 from .projection import project
 
 POINTS_MAX = 10
 FOOT_MARGIN = 1e-3
-
-
-@dataclass
-class Pair:
-    """One contact pair: who touches whom, and by which law."""
-
-    secondary_nodes: list[int]
-    secondary_faces: list[tuple[int, int]]
-    primary_faces: list[tuple[int, int]]
-    node_based: bool
-    node_area: float | None
-    law: object
-    behavior: list[str]
-
-
-@dataclass
-class Deck:
-    """A model. Nodes and elements count from zero here, from one in the text."""
-
-    coordinates: np.ndarray
-    elements: list[list[int]]
-    bodies: list[list[int]]
-    materials: list[tuple[float, float, float]]
-    pairs: list[Pair]
-    fixed: dict[int, float] = field(default_factory=dict)
-    nodal_forces: dict[int, float] = field(default_factory=dict)
-    face_pressures: list[tuple[int, int, float]] = field(default_factory=list)
-    surface_pressures: list[tuple[int, int, float]] = field(default_factory=list)
-    gravities: list[tuple[int, float, np.ndarray]] = field(default_factory=list)
-    full_integration: bool = False
-    increments: int = 1
 
 
 class Unsuitable(Exception):
@@ -238,20 +206,6 @@ def draw(rng, laws):
     return deck
 
 
-def primary_corners(deck, pair):
-    """Corner coordinates of each primary face, outward."""
-    return [deck.coordinates[nodes] for nodes in face_nodes(deck, pair.primary_faces)]
-
-
-def face_nodes(deck, faces):
-    """Node numbers of faces, in the cyclic order whose normal points out of the body."""
-    result = []
-    for element, face in faces:
-        nodes = np.array(deck.elements[element])
-        result.append([int(n) for n in nodes[fe.outward_face(deck.coordinates[nodes], face)]])
-    return result
-
-
 def random_deck(seed, laws=("hard", "linear", "tabular")):
     """The deck of a seed. Unsuitable draws are replaced by the next of the same stream."""
     rng = np.random.default_rng(seed)
@@ -261,49 +215,3 @@ def random_deck(seed, laws=("hard", "linear", "tabular")):
         except Unsuitable:
             continue
     raise RuntimeError(f"seed {seed} gives no suitable deck")
-
-
-def surface_lines(name, faces):
-    """`*SURFACE, TYPE=ELEMENT`."""
-    return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{e + 1}, S{f + 1}" for e, f in faces)]
-
-
-def text(deck):
-    """The deck as Abaqus text; numbers with 17 digits."""
-    lines = ["*HEADING", "random deck", "*NODE, NSET=NALL"]
-    lines += [f"{i + 1}, {x!r}, {y!r}, {z!r}" for i, (x, y, z) in enumerate(deck.coordinates.tolist())]
-    for index, members in enumerate(deck.bodies, 1):
-        lines.append(f"*ELEMENT, TYPE=C3D8, ELSET=BODY{index}")
-        lines += [f"{e + 1}, " + ", ".join(str(n + 1) for n in deck.elements[e]) for e in members]
-    for index, (young, poisson, density) in enumerate(deck.materials, 1):
-        lines += [f"*MATERIAL, NAME=M{index}", "*ELASTIC", f"{young!r}, {poisson!r}", "*DENSITY", f"{density!r},"]
-        lines += [f"*SOLID SECTION, ELSET=BODY{index}, MATERIAL=M{index}"]
-    for index, pair in enumerate(deck.pairs, 1):
-        if pair.node_based:
-            lines += [f"*SURFACE, NAME=SEC{index}, TYPE=NODE", *(f"{n + 1}," for n in pair.secondary_nodes)]
-        else:
-            lines += surface_lines(f"SEC{index}", pair.secondary_faces)
-        lines += surface_lines(f"PRI{index}", pair.primary_faces)
-        lines += [f"*SURFACE INTERACTION, NAME=INT{index}"]
-        lines += [repr(pair.node_area)] if pair.node_area is not None else []
-        lines += [
-            *pair.behavior,
-            f"*CONTACT PAIR, INTERACTION=INT{index}, TYPE=NODE TO SURFACE",
-            f"SEC{index}, PRI{index}",
-        ]
-    for index, (element, face, _) in enumerate(deck.surface_pressures, 1):
-        lines += surface_lines(f"PUSHED{index}", [(element, face)])
-    lines += ["*BOUNDARY", *(f"{dof // 3 + 1}, {dof % 3 + 1}" for dof, value in deck.fixed.items() if value == 0.0)]
-    lines += ["*STEP", "*STATIC, DIRECT", f"{1.0 / deck.increments!r}, 1.0", "*BOUNDARY"]
-    lines += [
-        f"{dof // 3 + 1}, {dof % 3 + 1}, {dof % 3 + 1}, {value!r}" for dof, value in deck.fixed.items() if value != 0.0
-    ]
-    if deck.nodal_forces:
-        lines += ["*CLOAD", *(f"{dof // 3 + 1}, {dof % 3 + 1}, {value!r}" for dof, value in deck.nodal_forces.items())]
-    if deck.face_pressures or deck.gravities:
-        lines += ["*DLOAD", *(f"{e + 1}, P{f + 1}, {value!r}" for e, f, value in deck.face_pressures)]
-        lines += [f"BODY{b + 1}, GRAV, {g!r}, " + ", ".join(repr(float(v)) for v in n) for b, g, n in deck.gravities]
-    for index, (_, _, value) in enumerate(deck.surface_pressures, 1):
-        lines += ["*DSLOAD", f"PUSHED{index}, P, {value!r}"]
-    lines += ["*NODE PRINT, NSET=NALL", "U, RF", "*CONTACT PRINT", "CSTR, CDIS", "*END STEP"]
-    return "\n".join(lines) + "\n"

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import fe
-from .decks import face_nodes, primary_corners
+from .assembly import contact_points, distributed_forces, nodal_forces, stiffness
 from .enumeration import Law, solve, solve_exponential
-from .projection import project, tributary_areas
 
 
 @dataclass
@@ -30,18 +28,14 @@ class Oracle:
     def __init__(self, deck):
         self.deck = deck
         count = len(deck.coordinates)
-        blocks = [None] * len(deck.elements)
-        for (young, poisson, _), members in zip(deck.materials, deck.bodies, strict=True):
-            coordinates = deck.coordinates[np.array([deck.elements[e] for e in members])]
-            found = fe.stiffnesses(coordinates, fe.elasticity(young, poisson), deck.full_integration)
-            for element, block in zip(members, found, strict=True):
-                blocks[element] = block
-        self.stiffness = fe.assemble(count, deck.elements, blocks)
-        self.load = self.external_forces()
+        self.stiffness = stiffness(deck)
+        self.load = nodal_forces(deck, deck.nodal_forces) + distributed_forces(deck)
         self.prescribed = np.array(sorted(deck.fixed))
         self.free = np.setdiff1d(np.arange(3 * count), self.prescribed)
         self.values = np.array([deck.fixed[d] for d in self.prescribed])
-        self.contact_rows()
+        points = contact_points(deck)
+        self.rows, self.initial, self.areas = points.rows, points.overclosures, points.areas
+        self.point_pairs, self.normals = points.pairs, points.normals
         inner = self.stiffness[np.ix_(self.free, self.free)]
         columns = np.column_stack([self.rows[:, self.free].T, self.load[self.free]])
         columns = np.column_stack([columns, self.stiffness[np.ix_(self.free, self.prescribed)] @ self.values])
@@ -49,48 +43,6 @@ class Oracle:
         self.influence = solved[:, : len(self.rows)]
         self.unloaded = solved[:, -2] - solved[:, -1]
         self.compliance = self.rows[:, self.free] @ self.influence
-
-    def external_forces(self):
-        """Consistent nodal forces of all loads at factor one."""
-        deck = self.deck
-        forces = np.zeros(3 * len(deck.coordinates))
-        for dof, value in deck.nodal_forces.items():
-            forces[dof] += value
-        for element, face, pressure in deck.face_pressures + deck.surface_pressures:
-            (nodes,) = face_nodes(deck, [(element, face)])
-            vectors = fe.face_integrals(deck.coordinates[nodes])[1]
-            for node, vector in zip(nodes, vectors, strict=True):
-                forces[3 * node : 3 * node + 3] -= pressure * vector
-        for body, magnitude, direction in deck.gravities:
-            density = deck.materials[body][2]
-            for element in deck.bodies[body]:
-                nodes = deck.elements[element]
-                parts = fe.gravity_forces(deck.coordinates[nodes], magnitude * direction, density)
-                for node, part in zip(nodes, parts, strict=True):
-                    forces[3 * node : 3 * node + 3] += part
-        return forces
-
-    def contact_rows(self):
-        """Rows dh/du, initial overclosures, areas, and the pair of each point."""
-        deck = self.deck
-        rows, initial, areas, pairs, normals = [], [], [], [], []
-        for index, pair in enumerate(deck.pairs):
-            corners = primary_corners(deck, pair)
-            primary = face_nodes(deck, pair.primary_faces)
-            tributary = tributary_areas(len(deck.coordinates), face_nodes(deck, pair.secondary_faces), deck.coordinates)
-            for node in pair.secondary_nodes:
-                face, weights, normal, clearance, _ = project(deck.coordinates[node], corners)
-                row = np.zeros(3 * len(deck.coordinates))
-                row[3 * node : 3 * node + 3] -= normal
-                for corner, weight in zip(primary[face], weights, strict=True):
-                    row[3 * corner : 3 * corner + 3] += weight * normal
-                rows.append(row)
-                initial.append(-clearance)
-                areas.append((pair.node_area or 1.0) if pair.node_based else tributary[node])
-                pairs.append(index)
-                normals.append(normal)
-        self.rows, self.initial, self.areas = np.array(rows), np.array(initial), np.array(areas)
-        self.point_pairs, self.normals = np.array(pairs), np.array(normals)
 
     def at(self, factor):
         """Solution with all loads and prescribed displacements times `factor`."""
