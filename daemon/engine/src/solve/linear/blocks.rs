@@ -1,0 +1,73 @@
+//! Where the numbers of a sparse factor are.
+
+/// Where the blocks of L are. A supernode is a run of columns with one pattern below them; its block is dense and
+/// column-major, the rows of its own columns first (their strict upper triangle means nothing), then the pattern.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blocks {
+    /// First unknown of each supernode, then the number of unknowns.
+    pub starts: Vec<usize>,
+    /// Where the pattern of each supernode begins, then its total length.
+    pub pattern_starts: Vec<usize>,
+    /// Rows below the supernodes' own, ascending within each.
+    pub pattern: Vec<u32>,
+    /// Where the values of each supernode begin, then their total number.
+    pub value_starts: Vec<usize>,
+}
+
+/// One supernode of L.
+#[derive(Clone, Copy)]
+pub struct Block<'a> {
+    /// Its first unknown.
+    pub start: usize,
+    /// Its number of columns.
+    pub width: usize,
+    /// Rows below its own.
+    pub pattern: &'a [u32],
+    /// `width` columns of `width + pattern.len()` numbers.
+    pub values: &'a [f64],
+}
+
+impl Block<'_> {
+    /// Length of a column.
+    pub fn height(&self) -> usize {
+        self.width + self.pattern.len()
+    }
+
+    /// A column from the diagonal on: the rest of the supernode's own rows, then the pattern rows.
+    pub fn column(&self, j: usize) -> (&[f64], &[f64]) {
+        let column = &self.values[j * self.height()..(j + 1) * self.height()];
+        column[j..].split_at(self.width - j)
+    }
+}
+
+impl Blocks {
+    /// Number of supernodes.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.starts[self.len()]
+    }
+
+    /// Length of the longest pattern.
+    pub fn pattern_max(&self) -> usize {
+        self.pattern_starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0)
+    }
+
+    /// A supernode with its values.
+    pub fn block<'a>(&'a self, values: &'a [f64], s: usize) -> Block<'a> {
+        Block {
+            start: self.starts[s],
+            width: self.starts[s + 1] - self.starts[s],
+            pattern: &self.pattern[self.pattern_starts[s]..self.pattern_starts[s + 1]],
+            values: &values[self.value_starts[s]..self.value_starts[s + 1]],
+        }
+    }
+
+    /// The supernode of an unknown.
+    pub fn supernode_of(&self, unknown: usize) -> usize {
+        self.starts.partition_point(|&start| start <= unknown) - 1
+    }
+}

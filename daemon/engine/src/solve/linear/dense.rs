@@ -1,0 +1,123 @@
+//! Dense matrices: products, triangular solves, Cholesky factors, eigenvalues.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve;
+use faer::reborrow::ReborrowMut;
+use faer::{Accum, MatMut, MatRef, Par};
+
+use super::PIVOT_RELATIVE_MIN;
+
+/// Dense column-major matrix.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dense {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub columns: usize,
+    /// Entries, column by column.
+    pub values: Vec<f64>,
+}
+
+impl Dense {
+    /// A matrix of zeros.
+    pub fn zeros(rows: usize, columns: usize) -> Self {
+        Self { rows, columns, values: vec![0.0; rows * columns] }
+    }
+
+    /// One column.
+    pub fn column(&self, j: usize) -> &[f64] {
+        &self.values[j * self.rows..(j + 1) * self.rows]
+    }
+
+    /// One column, writable.
+    pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.values[j * self.rows..(j + 1) * self.rows]
+    }
+
+    /// `out += self * x`, columns in order.
+    pub fn multiply_add(&self, x: &[f64], out: &mut [f64]) {
+        for (j, &factor) in x.iter().enumerate() {
+            if factor != 0.0 {
+                for (o, v) in out.iter_mut().zip(self.column(j)) {
+                    *o += factor * v;
+                }
+            }
+        }
+    }
+
+    fn view(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.values, self.rows, self.columns)
+    }
+
+    pub(super) fn view_mut(&mut self) -> MatMut<'_, f64> {
+        MatMut::from_column_major_slice_mut(&mut self.values, self.rows, self.columns)
+    }
+
+    /// `selfᵀ self`, exactly symmetric.
+    pub fn gram(&self) -> Dense {
+        let mut out = Dense::zeros(self.columns, self.columns);
+        matmul(out.view_mut(), Accum::Replace, self.view().transpose(), self.view(), 1.0, Par::Seq);
+        for j in 0..self.columns {
+            for i in 0..j {
+                out.values[j * self.columns + i] = out.values[i * self.columns + j];
+            }
+        }
+        out
+    }
+
+    /// `self <- lower⁻¹ self`.
+    pub fn solve_lower(&mut self, lower: &Dense) {
+        triangular_solve::solve_lower_triangular_in_place(lower.view(), self.view_mut(), Par::Seq);
+    }
+
+    /// `self <- lower⁻ᵀ self`.
+    pub fn solve_lower_transposed(&mut self, lower: &Dense) {
+        triangular_solve::solve_upper_triangular_in_place(lower.view().transpose(), self.view_mut(), Par::Seq);
+    }
+}
+
+/// Dense `L Lᵀ` of the leading `n x n` block of a buffer with leading dimension `n`, in place; false when a pivot is
+/// not positive or is rounding against its diagonal entry. The strict upper triangle is not used.
+pub fn cholesky_in_place(matrix: &mut [f64], n: usize, scratch: &mut DenseScratch) -> bool {
+    use faer::linalg::cholesky::llt::factor;
+    scratch.diagonal.clear();
+    scratch.diagonal.extend((0..n).map(|i| matrix[i * n + i]));
+    let request = factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
+    if scratch.memory_for < n {
+        scratch.memory = Some(MemBuffer::new(request));
+        scratch.memory_for = n;
+    }
+    let memory = scratch.memory.get_or_insert_with(|| MemBuffer::new(request));
+    let view = MatMut::from_column_major_slice_mut(matrix, n, n);
+    if factor::cholesky_in_place(view, Default::default(), Par::Seq, MemStack::new(memory), Default::default()).is_err()
+    {
+        return false;
+    }
+    (0..n).all(|i| matrix[i * n + i] * matrix[i * n + i] > PIVOT_RELATIVE_MIN * scratch.diagonal[i])
+}
+
+/// `x <- (L Lᵀ)⁻¹ x` with the factor of [`cholesky_in_place`].
+pub fn cholesky_solve(factor: &[f64], n: usize, x: &mut [f64]) {
+    let lower = MatRef::from_column_major_slice(factor, n, n);
+    let mut rhs = MatMut::from_column_major_slice_mut(x, n, 1);
+    triangular_solve::solve_lower_triangular_in_place(lower, rhs.rb_mut(), Par::Seq);
+    triangular_solve::solve_upper_triangular_in_place(lower.transpose(), rhs, Par::Seq);
+}
+
+/// Work space of the dense factorisation, kept between increments.
+#[derive(Default)]
+pub struct DenseScratch {
+    diagonal: Vec<f64>,
+    memory: Option<MemBuffer>,
+    memory_for: usize,
+}
+
+/// Eigenvalues (ascending) and eigenvectors (columns) of a small symmetric matrix.
+pub fn eigen(matrix: &[[f64; 6]; 6]) -> ([f64; 6], [[f64; 6]; 6]) {
+    let view = faer::Mat::from_fn(6, 6, |i, j| matrix[i][j]);
+    let decomposition = view.self_adjoint_eigen(faer::Side::Lower).expect("a finite symmetric matrix has eigenvectors");
+    let values = std::array::from_fn(|i| decomposition.S()[i]);
+    let vectors = std::array::from_fn(|j| std::array::from_fn(|i| decomposition.U()[(i, j)]));
+    (values, vectors)
+}

@@ -1,0 +1,77 @@
+//! Structure of a sparse factor: which columns form a supernode and which rows each supernode reaches.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::SymbolicSupernodalParams;
+use faer::sparse::linalg::cholesky::{simplicial, supernodal};
+
+use super::blocks::Blocks;
+use crate::solve::assembly::LowerMatrix;
+
+/// Sizes of a factorisation before it is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FactorSize {
+    /// Numbers stored in L.
+    pub values: usize,
+}
+
+/// Structure of L.
+pub struct Symbolic {
+    pub(super) inner: supernodal::SymbolicSupernodalCholesky<usize>,
+}
+
+impl Symbolic {
+    /// Analyses a matrix in its own order.
+    pub fn analyse(matrix: &LowerMatrix) -> Self {
+        let n = matrix.len();
+        // faer analyses the upper triangle: transpose the pattern. Rows come out ascending.
+        let mut starts = vec![0usize; n + 1];
+        for &r in &matrix.rows {
+            starts[r + 1] += 1;
+        }
+        for i in 0..n {
+            starts[i + 1] += starts[i];
+        }
+        let mut fill = starts.clone();
+        let mut rows = vec![0usize; matrix.rows.len()];
+        for j in 0..n {
+            for &r in &matrix.rows[matrix.starts[j]..matrix.starts[j + 1]] {
+                rows[fill[r]] = j;
+                fill[r] += 1;
+            }
+        }
+        let upper = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
+        let mut etree = vec![0isize; n];
+        let mut counts = vec![0usize; n];
+        let request = simplicial::prefactorize_symbolic_cholesky_scratch::<usize>(n, rows.len())
+            .or(supernodal::factorize_supernodal_symbolic_cholesky_scratch::<usize>(n));
+        let mut memory = MemBuffer::new(request);
+        let stack = MemStack::new(&mut memory);
+        let etree = simplicial::prefactorize_symbolic_cholesky(&mut etree, &mut counts, upper, stack);
+        let inner = supernodal::factorize_supernodal_symbolic_cholesky(
+            upper,
+            etree,
+            &counts,
+            stack,
+            SymbolicSupernodalParams::default(),
+        )
+        .expect("the index type is as wide as memory");
+        Self { inner }
+    }
+
+    /// Numbers that L will hold.
+    pub fn size(&self) -> FactorSize {
+        FactorSize { values: self.inner.len_val() }
+    }
+
+    /// Where the blocks of L are.
+    pub(super) fn blocks(&self) -> Blocks {
+        let ends = self.inner.supernode_end();
+        Blocks {
+            starts: std::iter::once(0).chain(ends.iter().copied()).collect(),
+            pattern_starts: self.inner.col_ptr_for_row_idx().to_vec(),
+            pattern: self.inner.row_idx().iter().map(|&row| row as u32).collect(),
+            value_starts: self.inner.col_ptr_for_val().to_vec(),
+        }
+    }
+}
