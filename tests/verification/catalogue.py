@@ -95,6 +95,18 @@ CASES = [
         "0.5 %",
     ),
     Case(
+        "C01",
+        "The solver shall converge to Hertz's pressures of a ball on a rigid flat: 5, 7 and 10 elements over the radius.",
+        "closed form; the approach: Tatara's for a ball between two flats",
+        "0.2 % of the peak, 0.1 % of the approach at 10 elements; order at least 1.7 at the peak, 0.9 in the mean",
+    ),
+    Case(
+        "C03",
+        "The solver shall converge to Hertz's pressures of a roller on a block: 5, 10 and 20 elements over the half width.",
+        "closed form of half planes",
+        "0.05 % of the peak at 20 elements and a hundredth of the load; order at least 1.7 at the peak, 0.9 in the mean",
+    ),
+    Case(
         "history",
         "The solver shall ramp, keep and remove displacements and loads from step to step and follow amplitudes.",
         "closed form of a column of springs at every increment",
