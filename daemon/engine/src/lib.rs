@@ -21,6 +21,7 @@ mod outputs;
 mod port_config;
 mod prepared;
 mod request;
+mod restart;
 mod results;
 mod state;
 

@@ -11,6 +11,7 @@ mod clock;
 mod interrupt;
 mod monitor;
 mod progress;
+mod restart;
 mod settings;
 
 use std::io::Write;

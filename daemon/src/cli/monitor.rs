@@ -1,8 +1,9 @@
 //! Follows a run: writes results, shows progress, carries the wish to stop.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use overclosure::output::ResultWriter;
+use overclosure::output::{ResultWriter, StepSummary};
 use overclosure::simulation::{IncrementReport, Simulation, Watch};
 
 use super::clock::{Clock, Stage};
@@ -16,6 +17,17 @@ pub struct Monitor<'a> {
     stop: &'a AtomicBool,
     time_end: f64,
     audit: Audit,
+    sizes: Sizes,
+}
+
+/// What a run has left when it is over.
+pub struct Followed {
+    /// To be finished.
+    pub writer: ResultWriter,
+    /// Every finding of the audit.
+    pub audit: Vec<String>,
+    /// Smallest and largest increment of each step.
+    pub sizes: Sizes,
 }
 
 impl<'a> Monitor<'a> {
@@ -28,17 +40,18 @@ impl<'a> Monitor<'a> {
         time_end: f64,
     ) -> Self {
         progress.stage(Stage::SOLVE);
-        Self { writer, progress, clock, stop, time_end, audit: Audit::default() }
+        Self { writer, progress, clock, stop, time_end, audit: Audit::default(), sizes: Sizes::default() }
     }
 
-    /// The writer, to be finished, and every finding of the audit.
-    pub fn finish(self) -> (ResultWriter, Vec<String>) {
-        (self.writer, self.audit.findings())
+    /// Nothing is left to follow.
+    pub fn finish(self) -> Followed {
+        Followed { writer: self.writer, audit: self.audit.findings(), sizes: self.sizes }
     }
 }
 
 impl Watch for Monitor<'_> {
     fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
+        self.sizes.take(report);
         self.audit.take(simulation.audit(), &format!("step {}, increment {}", report.step, report.increment));
         let solving = self.clock.enter(Stage::WRITE);
         self.writer.increment(simulation, report);
@@ -48,6 +61,27 @@ impl Watch for Monitor<'_> {
 
     fn cancelled(&self) -> bool {
         self.stop.load(Ordering::SeqCst) || self.writer.cancelled()
+    }
+}
+
+/// Smallest and largest increment by step number.
+#[derive(Default)]
+pub struct Sizes(BTreeMap<u32, (f64, f64)>);
+
+impl Sizes {
+    fn take(&mut self, report: &IncrementReport) {
+        let size = report.increment_size;
+        let (min, max) = self.0.entry(report.step).or_insert((size, size));
+        *min = size.min(*min);
+        *max = size.max(*max);
+    }
+
+    /// Enters them into the summaries of all steps, in order.
+    pub fn enter(&self, mut steps: Vec<StepSummary>) -> Vec<StepSummary> {
+        for (number, step) in (1..).zip(&mut steps) {
+            (step.increment_min, step.increment_max) = self.0.get(&number).copied().unzip();
+        }
+        steps
     }
 }
 

@@ -8,21 +8,26 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use overclosure::diagnostic::Diagnostic;
 use overclosure::model::Dialect;
-use overclosure::output::{Finding, ModelSize, OutputError, ResultWriter, RunOutcome, RunReport, write_report};
-use overclosure::port::{self, PortList};
+use overclosure::output::{
+    Finding, ModelSize, OutputError, RestartOrigin, ResultWriter, RunOutcome, RunReport, SnapshotSummary, WriteOptions,
+    write_report,
+};
+use overclosure::port;
 use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Simulation};
 
 use super::clock::{Clock, Stage};
-use super::monitor::Monitor;
+use super::monitor::{Followed, Monitor, Sizes};
 use super::open::{open_deck, read_ports, report};
 use super::progress::Progress;
+use super::restart::{self, Restart};
 use super::{DialectArg, Exit, PathArg, complain, interrupt, settings};
 
 /// Arguments of `overclosure run`.
 #[derive(Args)]
 #[command(after_help = "\
 Files in DIR, named after the deck: JOB.json (outcome, work, findings, times), JOB_history.csv (one row per increment),
-JOB_contact.csv, JOB_nodes.csv (by the output requests of the deck), JOB.pvd with its .vtu (ParaView), JOB.dat (printed tables).
+JOB_contact.csv, JOB_nodes.csv (by the output requests of the deck), JOB.pvd with its .vtu (ParaView), JOB.dat (printed tables),
+JOB_restart_STEP_INCREMENT.ovck (by *RESTART, WRITE of the deck, or by --snapshots).
 Ctrl-C stops after the present increment and keeps what there is; a second one stops at once.")]
 pub struct RunArgs {
     /// The deck; results are named after it.
@@ -45,6 +50,12 @@ pub struct RunArgs {
     /// Names and units of ports [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
     #[arg(long, value_name = "FILE")]
     ports: Option<PathBuf>,
+    /// Goes on from a snapshot of the same deck. The results are those after it, with the bits of a run that never stopped.
+    #[arg(long, value_name = "FILE")]
+    restart: Option<PathBuf>,
+    /// Writes a snapshot every N increments, whatever *RESTART, WRITE says, and at the end of each step.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    snapshots: Option<u32>,
     /// Nothing on the terminal but findings.
     #[arg(long)]
     quiet: bool,
@@ -64,7 +75,9 @@ struct Job {
     directory: PathBuf,
     dialect: Dialect,
     prepared: Arc<PreparedModel>,
-    settings: Vec<settings::Setting>,
+    simulation: Simulation,
+    origin: Option<RestartOrigin>,
+    files: WriteOptions,
     diagnostics: Vec<Diagnostic>,
     clock: Clock,
     progress: Progress,
@@ -74,11 +87,18 @@ struct Job {
 impl Job {
     /// Everything that can be wrong with the input is found here.
     fn read(arguments: RunArgs) -> Result<Self, Exit> {
-        let RunArgs { deck, out, sets, dialect, path, threads, ports, quiet } = arguments;
+        let RunArgs { deck, out, sets, dialect, path, threads, ports, restart, snapshots, quiet } = arguments;
         let stop = interrupt::watch()?;
         let mut clock = Clock::start(Stage::Read);
         let progress = Progress::new(quiet);
         progress.stage(Stage::Read);
+        let name = match deck.file_stem() {
+            Some(stem) => stem.to_string_lossy().into_owned(),
+            None => String::from("job"),
+        };
+        let directory = out.unwrap_or_else(|| deck.parent().map(Path::to_owned).unwrap_or_default());
+        let directory = if directory.as_os_str().is_empty() { PathBuf::from(".") } else { directory };
+        let restart = restart.map(|file| Restart::read(file, &directory, &name)).transpose()?;
         let dialect = dialect.into();
         let assignments = settings::parse(&sets);
         let ports_toml = read_ports(ports.as_deref(), &deck);
@@ -105,45 +125,57 @@ impl Job {
         })?;
         progress.hidden_while(|| report(prepared.warnings()));
         diagnostics.extend_from_slice(prepared.warnings());
-        let settings = progress.hidden_while(|| settings::resolve(&assignments, &prepared.ports().inputs))?;
-        let name = match deck.file_stem() {
-            Some(stem) => stem.to_string_lossy().into_owned(),
-            None => String::from("job"),
-        };
-        let directory = out.unwrap_or_else(|| deck.parent().map(Path::to_owned).unwrap_or_default());
-        let directory = if directory.as_os_str().is_empty() { PathBuf::from(".") } else { directory };
-        Ok(Self { name, deck, directory, dialect, prepared, settings, diagnostics, clock, progress, stop })
+        let mut simulation = Simulation::new(Arc::clone(&prepared));
+        let origin = progress.hidden_while(|| {
+            let origin = restart.map(|restart| restart.apply(&mut simulation)).transpose()?;
+            settings::apply(settings::resolve(&assignments, &prepared.ports().inputs)?, &mut simulation)?;
+            if let Some(origin) = origin.as_ref().filter(|_| !quiet) {
+                complain(&restart::told(origin));
+            }
+            Ok(origin)
+        })?;
+        let files = WriteOptions { snapshots: snapshots.map(restart::every), restarted: origin.is_some() };
+        Ok(Self {
+            name,
+            deck,
+            directory,
+            dialect,
+            prepared,
+            simulation,
+            origin,
+            files,
+            diagnostics,
+            clock,
+            progress,
+            stop,
+        })
     }
 
     /// Runs every step and writes the results.
     fn solve(mut self) -> Result<Exit, Exit> {
         let writer = self.create_files().map_err(|error| failed(&error))?;
-        let mut simulation = Simulation::new(Arc::clone(&self.prepared));
-        for setting in &self.settings {
-            // The names were found among the inputs and the values are finite.
-            if let Err(error) = simulation.set_magnitude(setting.input, setting.value) {
-                complain(&format!("error: --set {}: {error}", setting.name));
-                return Err(Exit::OurFailure);
-            }
-        }
         self.clock.enter(Stage::SOLVE);
         interrupt::solving();
-        let end = simulation.time_end();
+        let end = self.simulation.time_end();
         let mut monitor = Monitor::new(writer, &self.progress, &mut self.clock, &self.stop, end);
-        let outcome = match simulation.advance(end, &mut monitor) {
+        let outcome = match self.simulation.advance(end, &mut monitor) {
             Ok(outcome) => outcome,
             Err(error) => {
                 complain(&format!("error: the end of the last step cannot be taken as a target: {error}"));
                 return Err(Exit::OurFailure);
             }
         };
-        let (writer, audit) = monitor.finish();
+        let Followed { writer, audit, sizes } = monitor.finish();
         self.clock.enter(Stage::WRITE);
         self.progress.stage(Stage::WRITE);
-        let written = writer.finish(&simulation);
+        let written = writer.finish(&self.simulation);
         self.progress.clear();
-        let ended = Ended::new(&outcome, written.is_err(), simulation.time());
-        let report = self.report(&simulation, &ended, audit);
+        let ended = Ended::new(&outcome, written.is_err(), self.simulation.time());
+        let (snapshots, written) = match written {
+            Ok(snapshots) => (snapshots, Ok(())),
+            Err(error) => (Vec::new(), Err(error)),
+        };
+        let report = self.report(&ended, audit, &sizes, snapshots);
         let written = written.and_then(|()| write_report(&self.directory, &self.name, &report));
         ended.tell(&report, self.progress.quiet());
         match written {
@@ -155,10 +187,11 @@ impl Job {
     fn create_files(&self) -> Result<ResultWriter, OutputError> {
         std::fs::create_dir_all(&self.directory)
             .map_err(|source| OutputError { path: self.directory.clone(), source })?;
-        ResultWriter::create(&self.directory, &self.name, Arc::clone(&self.prepared))
+        ResultWriter::create(&self.directory, &self.name, Arc::clone(&self.prepared), self.files)
     }
 
-    fn report(&self, simulation: &Simulation, ended: &Ended, audit: Vec<String>) -> RunReport {
+    fn report(&self, ended: &Ended, audit: Vec<String>, sizes: &Sizes, snapshots: Vec<SnapshotSummary>) -> RunReport {
+        let simulation = &self.simulation;
         let mesh = &self.prepared.model().mesh;
         RunReport {
             job: self.name.clone(),
@@ -173,16 +206,20 @@ impl Job {
                 elements: mesh.elements.len(),
                 contact_points: self.prepared.contact_points().len(),
             },
-            inputs_set: self.inputs_set(self.prepared.ports()),
-            steps: simulation.step_reports().into_iter().map(Into::into).collect(),
+            restarted_from: self.origin.clone(),
+            inputs_set: self.inputs_set(),
+            steps: sizes.enter(simulation.step_reports().into_iter().map(Into::into).collect()),
+            snapshots,
             diagnostics: self.diagnostics.iter().map(Finding::from).collect(),
             audit,
             wall_seconds: self.clock.seconds(),
         }
     }
 
-    fn inputs_set(&self, ports: &PortList) -> BTreeMap<String, f64> {
-        self.settings.iter().map(|s| (ports.inputs[s.input].name.clone(), s.value)).collect()
+    /// Those set before the snapshot, if there is one, are still in force.
+    fn inputs_set(&self) -> BTreeMap<String, f64> {
+        let inputs = self.prepared.ports().inputs.iter().enumerate();
+        inputs.filter_map(|(i, port)| Some((port.name.clone(), self.simulation.magnitude(i)?))).collect()
     }
 }
 

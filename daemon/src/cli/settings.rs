@@ -1,6 +1,7 @@
 //! `--set PORT=VALUE`.
 
 use overclosure::port::Port;
+use overclosure::simulation::Simulation;
 
 use super::open::WHAT_BECOMES_AN_INPUT;
 use super::{Exit, complain};
@@ -56,6 +57,18 @@ pub fn resolve(assignments: &[Assignment], inputs: &[Port]) -> Result<Vec<Settin
         format!("the inputs of this deck are {}", names.join(", "))
     });
     Err(Exit::InputWrong)
+}
+
+/// Gives every input its value.
+pub fn apply(settings: Vec<Setting>, simulation: &mut Simulation) -> Result<(), Exit> {
+    for Setting { input, name, value } in settings {
+        // The names were found among the inputs and the values are finite.
+        if let Err(error) = simulation.set_magnitude(input, value) {
+            complain(&format!("error: --set {name}: {error}"));
+            return Err(Exit::OurFailure);
+        }
+    }
+    Ok(())
 }
 
 fn find(assignments: &[Assignment], inputs: &[Port]) -> (Vec<Setting>, Vec<String>) {

@@ -13,18 +13,22 @@ mod plan;
 mod port_table;
 mod printed;
 mod report;
+mod snapshots;
 mod vtu;
 
 #[cfg(test)]
 mod tests;
 
 pub use file::OutputError;
-pub use report::{Finding, ModelSize, RunOutcome, RunReport, StepSummary, write_report};
+pub use report::{Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StepSummary, write_report};
+pub use snapshots::SnapshotSummary;
+
+pub use crate::restart::Standing;
 
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::model::{Model, Procedure, Step};
+use crate::model::{Model, Procedure, RestartRequest, Step};
 use crate::simulation::{IncrementReport, NodalSolution, PreparedModel, Simulation, Watch};
 
 use contact_table::ContactTable;
@@ -34,6 +38,7 @@ use node_table::NodeTable;
 use plan::{Moment, Plan};
 use port_table::PortTable;
 use printed::Printed;
+use snapshots::Snapshots;
 
 /// Writes the results of a job into a directory, increment by increment.
 ///
@@ -48,14 +53,34 @@ pub struct ResultWriter {
     nodes: NodeTable,
     printed: Printed,
     frames: Frames,
+    snapshots: Snapshots,
     /// The last increment, if the requests of the deck did not make it a written one in every respect.
     unfinished: Option<IncrementReport>,
     error: Option<OutputError>,
 }
 
+/// What the deck does not say about the files of a run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WriteOptions {
+    /// Snapshots as here and not by `*RESTART, WRITE`.
+    pub snapshots: Option<RestartRequest>,
+    /// The run goes on from a snapshot: those that are there already stay.
+    pub restarted: bool,
+}
+
+/// Whether `directory` holds tables of `job` that [`ResultWriter::create`] would replace.
+pub fn holds_results(directory: &Path, job: &str) -> bool {
+    directory.join(format!("{job}_history.csv")).exists()
+}
+
 impl ResultWriter {
     /// Creates the files of `job` in `directory`, which must exist; results of an earlier run of the same name are replaced.
-    pub fn create(directory: &Path, job: &str, prepared: Arc<PreparedModel>) -> Result<Self, OutputError> {
+    pub fn create(
+        directory: &Path,
+        job: &str,
+        prepared: Arc<PreparedModel>,
+        options: WriteOptions,
+    ) -> Result<Self, OutputError> {
         report::remove(directory, job)?;
         Ok(Self {
             history: HistoryTable::create(directory, job, &prepared)?,
@@ -64,6 +89,7 @@ impl ResultWriter {
             nodes: NodeTable::create(directory, job)?,
             printed: Printed::create(directory, job, &prepared)?,
             frames: Frames::create(directory, job, prepared.model())?,
+            snapshots: Snapshots::create(directory, job, options.snapshots, options.restarted)?,
             prepared,
             unfinished: None,
             error: None,
@@ -75,15 +101,16 @@ impl ResultWriter {
         self.error.is_some()
     }
 
-    /// Ends the writing. A run that stopped early gets the rows and the frame that the last increment of a step gets.
-    pub fn finish(mut self, simulation: &Simulation) -> Result<(), OutputError> {
+    /// Ends the writing. A run that stopped early gets the rows, the frame and the snapshot that the last increment of a step
+    /// gets. Returns the snapshots that are there.
+    pub fn finish(mut self, simulation: &Simulation) -> Result<Vec<SnapshotSummary>, OutputError> {
         if let Some(error) = self.error {
             return Err(error);
         }
         if let Some(increment) = self.unfinished.take() {
             self.write(simulation, &increment, Moment::Stopped)?;
         }
-        Ok(())
+        Ok(self.snapshots.written())
     }
 
     fn write(
@@ -118,7 +145,8 @@ impl ResultWriter {
                 self.frames.write(&prepared, increment.time, fields, contact)?;
             }
         }
-        self.printed.write(&prepared, increment, &plan, &history, contact, fields.as_ref())
+        self.printed.write(&prepared, increment, &plan, &history, contact, fields.as_ref())?;
+        self.snapshots.write(step, increment, moment, simulation)
     }
 }
 

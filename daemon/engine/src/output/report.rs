@@ -8,8 +8,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::file::OutputError;
+use super::snapshots::SnapshotSummary;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::Dialect;
+use crate::restart::Standing;
 use crate::simulation::{StepReport, WorkCounts};
 
 /// How a run ended.
@@ -41,16 +43,30 @@ pub struct RunReport {
     pub time_reached: f64,
     /// Nodes, elements and contact points.
     pub size: ModelSize,
+    /// Where the run went on from; absent for one that began at the beginning.
+    pub restarted_from: Option<RestartOrigin>,
     /// Inputs that were set instead of those of the deck.
     pub inputs_set: BTreeMap<String, f64>,
     /// Per step begun, in order.
     pub steps: Vec<StepSummary>,
+    /// Snapshots from which a run can go on.
+    pub snapshots: Vec<SnapshotSummary>,
     /// Findings about the deck.
     pub diagnostics: Vec<Finding>,
     /// Findings of the audit of the solution.
     pub audit: Vec<String>,
     /// Wall seconds by phase.
     pub wall_seconds: BTreeMap<String, f64>,
+}
+
+/// The snapshot that a run went on from.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RestartOrigin {
+    /// The file, as the user named it.
+    pub file: String,
+    /// The last increment that it knows of.
+    #[serde(flatten)]
+    pub standing: Standing,
 }
 
 /// Size of a model.
@@ -83,6 +99,10 @@ pub struct StepSummary {
     pub cutbacks: u32,
     /// Sparse factorisations.
     pub factorizations: u32,
+    /// Smallest increment of the step in this run \[time\]; absent before the first.
+    pub increment_min: Option<f64>,
+    /// Largest increment of the step in this run \[time\]; absent before the first.
+    pub increment_max: Option<f64>,
 }
 
 impl From<StepReport> for StepSummary {
@@ -104,6 +124,8 @@ impl From<StepReport> for StepSummary {
             severe_discontinuity_iterations,
             cutbacks,
             factorizations,
+            increment_min: None,
+            increment_max: None,
         }
     }
 }

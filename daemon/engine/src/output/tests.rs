@@ -79,7 +79,8 @@ fn solved(increments: u32) -> tempfile::TempDir {
     let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
     let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| ());
     let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
-    let mut writer = ResultWriter::create(directory.path(), "job", Arc::clone(&prepared)).unwrap();
+    let mut writer =
+        ResultWriter::create(directory.path(), "job", Arc::clone(&prepared), WriteOptions::default()).unwrap();
     let mut simulation = Simulation::new(prepared);
     let mut watch = StopAfter { writer: &mut writer, left: increments };
     let outcome = simulation.advance(1.0, &mut watch).unwrap();
@@ -149,6 +150,7 @@ fn a_file_that_cannot_be_written_ends_the_writing_and_is_named() {
     let model = deck::read_text(DECK, Dialect::Abaqus).model.unwrap();
     let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| ());
     let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
-    let error = ResultWriter::create(directory.path(), "job", prepared).map(|_| ()).unwrap_err();
+    let error =
+        ResultWriter::create(directory.path(), "job", prepared, WriteOptions::default()).map(|_| ()).unwrap_err();
     assert!(error.to_string().contains("job_contact.csv"), "{error}");
 }
