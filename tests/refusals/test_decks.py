@@ -66,10 +66,46 @@ REFUSALS = [
     Refusal(
         "keyword that changes the answer",
         "*STEP\n",
+        "*RIGID BODY, ELSET=UPPER, REF NODE=1\n*STEP\n",
+        "*RIGID BODY",
+        ("would change the answer", "*EQUATION"),
+    ),
+    Refusal(
+        "equation over a held direction",
+        "*STEP\n",
         "*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n*STEP\n",
         "*EQUATION",
-        ("solid elements",),
+        ("node 1", "*BOUNDARY"),
     ),
+    Refusal(
+        "equations in a circle",
+        "*STEP\n",
+        "*EQUATION\n2\n5, 1, 1., 6, 1, -1.\n2\n6, 1, 1., 5, 1, 1.\n*STEP\n",
+        "*EQUATION",
+        ("circle", "node 5", "node 6"),
+    ),
+    Refusal(
+        "spring without stiffness",
+        "*STEP\n",
+        "*ELEMENT, TYPE=SPRING1, ELSET=GROUND\n7, 6\n*SPRING, ELSET=GROUND\n1\n*STEP\n",
+        "*SPRING",
+        ("data", "missing"),
+    ),
+    Refusal(
+        "spring that is not linear",
+        "*STEP\n",
+        "*ELEMENT, TYPE=SPRING1, ELSET=G\n7, 6\n*SPRING, ELSET=G, NONLINEAR\n1\n0., 0.\n1., 1.\n*STEP\n",
+        "*SPRING",
+        ("NONLINEAR",),
+    ),
+    Refusal(
+        "bar without a section",
+        "*STEP\n",
+        "*ELEMENT, TYPE=T3D2, ELSET=BAR\n7, 5, 15\n*STEP\n",
+        "*ELEMENT",
+        ("section", "7"),
+    ),
+    Refusal("restart in the deck", "*STEP\n", "*RESTART, READ, STEP=1\n*STEP\n", "*RESTART", ("--restart",)),
     Refusal(
         "element that cannot be solved", "TYPE=C3D8, ELSET=UPPER", "TYPE=C3D27, ELSET=UPPER", "*ELEMENT", ("C3D27",)
     ),

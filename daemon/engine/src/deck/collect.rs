@@ -81,15 +81,20 @@ fn join_continuations(source: &mut Source<'_>, mut header: Vec<u8>) -> io::Resul
 }
 
 /// Remedy for an element type that is not solved.
-const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20 and C3D20R are solved";
+const ELEMENT_TYPES: &str =
+    "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20, C3D20R, T3D2, SPRINGA, SPRING1, SPRING2 and MASS are solved";
 
 /// Kind of a type in upper case, as Abaqus means it.
 fn element_kind(name: &str) -> Option<ElementKind> {
-    ElementKind::SOLIDS.into_iter().find(|kind| kind.name() == name)
+    ElementKind::SOLIDS.into_iter().chain(ElementKind::CONNECTORS).find(|kind| kind.name() == name)
 }
 
 fn element_remedy(kind: ElementKind) -> String {
-    format!("write: number, node 1, …, node {}", kind.node_count())
+    match kind.node_count() {
+        1 => "write: number, node".into(),
+        2 => "write: number, node 1, node 2".into(),
+        count => format!("write: number, node 1, …, node {count}"),
+    }
 }
 
 fn binary_reason(line: &[u8]) -> &'static str {

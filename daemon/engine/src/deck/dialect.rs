@@ -107,6 +107,18 @@ const DIFFERENCES: &[Difference] = &[
         "the acceleration is the magnitude times the vector, whatever its length",
         "as CalculiX",
     ),
+    departs(
+        "*EQUATION with node sets",
+        "one equation for each node of the sets, paired by their numbers",
+        "the run stops",
+        "as Abaqus",
+    ),
+    departs(
+        "*SPRING without a line of directions",
+        "the first line is that of directions, blank for SPRINGA",
+        "a first item without a decimal point is a direction",
+        "in both dialects the type of the elements decides; the blank line of SPRINGA may be left out",
+    ),
     follows(
         "*RESTART, WRITE, FREQUENCY=n",
         "a snapshot every n increments and at the end of the step",

@@ -7,6 +7,7 @@ use super::keywords::{Keyword, Parameter as P};
 
 const WRITE_INTO_DECK: &str = "bring the lines in with *INCLUDE under the keyword";
 const FLAT_DECK: &str = "write the deck without parts and assemblies";
+const NO_DAMPING: &str = "damping has no effect in a static step";
 const STATICS_ONLY: &str = "only static steps are solved";
 
 /// Keywords that describe the model.
@@ -55,7 +56,7 @@ pub const MODEL: &[Keyword] = &[
             P::required("NSET"),
             P::value("ELSET"),
             P::flag("GENERATE"),
-            P::silent("UNSORTED"),
+            P::flag("UNSORTED"),
             P::silent("INTERNAL"),
             P::refused("INSTANCE", FLAT_DECK),
         ],
@@ -156,6 +157,44 @@ pub const MODEL: &[Keyword] = &[
             P::refused("NODAL THICKNESS", "solids have no thickness"),
             P::refused("REF NODE", "solids have no reference node"),
             P::refused("SYMMETRIC", "give each layer its own elements and section"),
+        ],
+    ),
+    Keyword::read(
+        "*SPRING",
+        Model,
+        Fields,
+        &[
+            P::required("ELSET"),
+            P::silent("RTOL"),
+            P::refused("NONLINEAR", "a spring has one stiffness: force per elongation, in tension and compression"),
+            P::refused("ORIENTATION", "give directions of a SPRING1 or SPRING2 in global axes"),
+            P::refused("COMPLEX STIFFNESS", STATICS_ONLY),
+            P::refused("DEPENDENCIES", "give one stiffness"),
+        ],
+    ),
+    Keyword::read(
+        "*MASS",
+        Model,
+        Fields,
+        &[
+            P::required("ELSET"),
+            P::one_of(
+                "TYPE",
+                &[("ISOTROPIC", Read), ("ANISOTROPIC", Refused("a mass is the same in every direction"))],
+            ),
+            P::refused("ORIENTATION", "a mass is the same in every direction"),
+            P::ignored("ALPHA", NO_DAMPING),
+            P::ignored("COMPOSITE", NO_DAMPING),
+        ],
+    ),
+    Keyword::read(
+        "*EQUATION",
+        Model,
+        Fields,
+        &[
+            P::refused("INPUT", WRITE_INTO_DECK),
+            P::refused("REMOVE", "an equation holds in every step"),
+            P::refused("REMOVE ALL", "an equation holds in every step"),
         ],
     ),
     Keyword::read(

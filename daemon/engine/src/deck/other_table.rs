@@ -8,7 +8,9 @@ const STATIC: Effect = Effect::Refused("only static steps are solved; replace th
 const FLAT: Effect = Effect::Refused("write the deck without parts and assemblies");
 const PLAIN_NODES: Effect = Effect::Refused("write the nodes and elements themselves");
 const AXES: Effect = Effect::Refused("give values in global directions");
-const SOLIDS: Effect = Effect::Refused("only solid elements (C3D4 to C3D20R) with *SOLID SECTION are solved");
+const SOLIDS: Effect = Effect::Refused(
+    "elements are solids (C3D4 to C3D20R), T3D2, SPRINGA, SPRING1, SPRING2 and MASS; nodes are coupled by *EQUATION",
+);
 const ELASTIC_ONLY: Effect =
     Effect::Refused("only isotropic linear elasticity is solved; describe the material by *ELASTIC");
 const LOADS: Effect = Effect::Refused("loads are *BOUNDARY, *CLOAD, *DLOAD (P1 to P6, GRAV) and *DSLOAD (P)");
@@ -135,7 +137,6 @@ pub const OTHER: &[Keyword] = &[
     other("*DISTRIBUTING COUPLING", SOLIDS),
     other("*DISTRIBUTION", SOLIDS),
     other("*DISTRIBUTION TABLE", SOLIDS),
-    other("*EQUATION", SOLIDS),
     other("*FASTENER", SOLIDS),
     other("*FASTENER PROPERTY", SOLIDS),
     other("*FLUID BEHAVIOR", SOLIDS),
@@ -156,7 +157,6 @@ pub const OTHER: &[Keyword] = &[
     other("*JOINT", SOLIDS),
     other("*KINEMATIC", SOLIDS),
     other("*KINEMATIC COUPLING", SOLIDS),
-    other("*MASS", SOLIDS),
     other("*MASS ADJUST", SOLIDS),
     other("*MEMBRANE SECTION", SOLIDS),
     other("*MPC", SOLIDS),
@@ -174,7 +174,6 @@ pub const OTHER: &[Keyword] = &[
     other("*SHELL SECTION", SOLIDS),
     other("*SHELL TO SOLID COUPLING", SOLIDS),
     other("*SLIDE LINE", SOLIDS),
-    other("*SPRING", SOLIDS),
     other("*SUBSTRUCTURE LOAD CASE", SOLIDS),
     other("*TIE", SOLIDS),
     other("*VALUES AT INFINITY", SOLIDS),

@@ -14,10 +14,13 @@ pub fn summary(model: &Model) -> String {
         let _ = writeln!(text, "{key:<14}{value}");
     };
     line("nodes", mesh.nodes.len().to_string());
-    line("elements", mesh.elements.len().to_string());
+    line("elements", elements(model));
     line("sets", format!("{} of nodes, {} of elements", mesh.node_sets.len(), mesh.element_sets.len()));
     line("surfaces", mesh.surfaces.len().to_string());
     line("materials", join(model.materials.iter().map(|material| material.name.as_str())));
+    if !model.equations.is_empty() {
+        line("equations", model.equations.len().to_string());
+    }
     for pair in &model.pairs {
         line("contact pair", describe_pair(model, pair));
     }
@@ -40,6 +43,20 @@ pub fn summary(model: &Model) -> String {
         );
     }
     text
+}
+
+/// Number of elements, and how many of each type where there are several.
+fn elements(model: &Model) -> String {
+    let mut types: Vec<(&str, usize)> = Vec::new();
+    for (kind, _) in model.mesh.elements.iter() {
+        match types.iter_mut().find(|(name, _)| *name == kind.name()) {
+            Some((_, count)) => *count += 1,
+            None => types.push((kind.name(), 1)),
+        }
+    }
+    let count = model.mesh.elements.len();
+    let types: Vec<String> = types.iter().map(|(name, count)| format!("{count} {name}")).collect();
+    if types.len() < 2 { count.to_string() } else { format!("{count}: {}", types.join(", ")) }
 }
 
 fn join<'a>(names: impl Iterator<Item = &'a str>) -> String {

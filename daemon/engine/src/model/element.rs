@@ -104,6 +104,9 @@ impl ElementKind {
         Self::C3D8RCalculix,
     ];
 
+    /// Every other kind.
+    pub const CONNECTORS: [Self; 5] = [Self::T3D2, Self::SpringA, Self::Spring1, Self::Spring2, Self::Mass];
+
     /// Where its nodes and faces are.
     pub const fn shape(self) -> ElementShape {
         match self {

@@ -1,7 +1,7 @@
 //! Load patterns: the fixed shapes whose scalar coefficients change in time.
 
-use crate::element::{self, Coordinates, face};
-use crate::model::{ElementFace, LoadKind, Model, NodeId};
+use crate::element::{self, Coordinates, connector, face};
+use crate::model::{Connector, ElementFace, ElementId, LoadKind, Model, NodeId};
 
 /// A pattern of unit coefficient; entries sorted by node and direction, each at most once.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,19 +50,36 @@ pub fn force_pattern(model: &Model, kind: &LoadKind) -> Column {
         }
         LoadKind::Gravity { elements, direction } => {
             for &e in elements {
-                let (kind, nodes) = (model.mesh.elements.kind(e.index()), model.mesh.elements.nodes(e.index()));
-                let material = &model.materials[model.mesh.element_materials[e.index()].index()];
-                let density = material.density.expect("the deck reader asks for a density where gravity acts");
-                let volumes = element::nodal_volumes(kind, &super::assembly::coordinates(&model.mesh, e.0));
-                for (&node, volume) in nodes.iter().zip(volumes) {
+                for (&node, mass) in model.mesh.elements.nodes(e.index()).iter().zip(nodal_masses(model, e)) {
                     for (d, component) in direction.iter().enumerate().filter(|(_, c)| **c != 0.0) {
-                        entries.push((node, d as u8, density * volume * component));
+                        entries.push((node, d as u8, mass * component));
                     }
                 }
             }
         }
     }
     Column::Force(merge(entries))
+}
+
+/// Mass that each node of an element stands for under a uniform acceleration: ∫ ρ N dV, half of ρ A L of a bar, all of a point
+/// mass; none for a spring.
+fn nodal_masses(model: &Model, e: ElementId) -> Vec<f64> {
+    let mesh = &model.mesh;
+    let density = || {
+        let material = &model.materials[mesh.element_materials[e.index()].index()];
+        material.density.expect("the deck reader asks for a density where gravity acts")
+    };
+    let coordinates = super::assembly::coordinates(mesh, e.0);
+    match mesh.connectors.get(&e) {
+        None => {
+            let density = density();
+            let volumes = element::nodal_volumes(mesh.elements.kind(e.index()), &coordinates);
+            volumes.into_iter().map(|volume| density * volume).collect()
+        }
+        Some(Connector::Bar { area }) => vec![0.5 * density() * area * connector::length(&coordinates); 2],
+        Some(Connector::Mass { mass }) => vec![*mass],
+        Some(Connector::Spring { .. }) => Vec::new(),
+    }
 }
 
 /// A pressure of 1 pushes into the body: against the outward area vectors.
@@ -75,5 +92,51 @@ fn pressure(model: &Model, faces: &[ElementFace], entries: &mut Vec<(NodeId, u8,
                 entries.push((node, d as u8, -component));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::deck::read_text;
+    use crate::model::Dialect;
+
+    /// A bar of length 7 from node 1 to node 2, a spring beside it and a mass of 5 at node 2.
+    const DECK: &str = "\
+*NODE
+1, 0., 0., 0.
+2, 2., 3., 6.
+*ELEMENT, TYPE=T3D2, ELSET=BAR
+1, 1, 2
+*ELEMENT, TYPE=SPRINGA, ELSET=SPRING
+2, 1, 2
+*ELEMENT, TYPE=MASS, ELSET=MASS
+3, 2
+*MATERIAL, NAME=M
+*ELASTIC
+200., 0.3
+*DENSITY
+4.
+*SOLID SECTION, ELSET=BAR, MATERIAL=M
+0.5
+*SPRING, ELSET=SPRING
+
+10.
+*MASS, ELSET=MASS
+5.
+*STEP
+*STATIC
+*DLOAD
+, GRAV, 9.81, 0., 0., -1.
+*END STEP
+";
+
+    #[test]
+    fn gravity_pulls_half_of_a_bar_to_each_end_and_all_of_a_mass() {
+        let reading = read_text(DECK, Dialect::Abaqus);
+        let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
+        let pattern = force_pattern(&model, &model.steps[0].loads[0].kind);
+        // 4 · 0.5 · 7 / 2 at each end.
+        assert_eq!(pattern.entries(), [(NodeId(0), 2, -7.0), (NodeId(1), 2, -7.0 - 5.0)]);
     }
 }

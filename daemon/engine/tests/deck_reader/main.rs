@@ -1,6 +1,8 @@
 //! The deck reader through its public face.
 
 mod base;
+mod connectors;
 mod damage;
+mod equations;
 mod restart;
 mod rules;

@@ -3,7 +3,8 @@
 use rustc_hash::FxHashMap;
 
 use crate::model::{
-    ElementFace, ElementId, ElementSet, Load, LoadKind, LoadsRemoved, MaterialId, Region, SetId, SurfaceId, SurfaceKind,
+    Connector, ElementFace, ElementId, ElementSet, Load, LoadKind, LoadsRemoved, MaterialId, Region, SetId, SurfaceId,
+    SurfaceKind,
 };
 
 use super::super::data::Row;
@@ -164,6 +165,11 @@ impl Builder<'_> {
             return None;
         }
         self.has_density(row, &region.members);
+        let section = |element: &ElementId| self.model.mesh.connectors.get(element);
+        if region.members.iter().all(|element| matches!(section(element), Some(Connector::Spring { .. }))) {
+            let message = format!("gravity on {} has no effect: springs have no mass", region.name);
+            self.report.warning(row.at, DLOAD, message, "give the weight to elements with mass, or add MASS elements");
+        }
         let kind = LoadKind::Gravity { elements: region.members, direction };
         self.load(region.region, region.name, kind, magnitude)
     }

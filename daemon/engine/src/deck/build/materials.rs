@@ -1,6 +1,6 @@
-//! `*MATERIAL`, `*ELASTIC`, `*DENSITY`, `*SOLID SECTION` and `*AMPLITUDE`.
+//! `*MATERIAL`, `*ELASTIC`, `*DENSITY` and `*AMPLITUDE`.
 
-use crate::model::{Amplitude, AmplitudeClock, Material, MaterialId, SetId, SolidSection};
+use crate::model::{Amplitude, AmplitudeClock, Material};
 
 use super::super::card::Card;
 use super::super::keywords::Placement;
@@ -10,7 +10,6 @@ use super::Builder;
 use super::layout::{Layout, is_refused};
 
 const MATERIAL: &str = "*MATERIAL";
-const SECTION: &str = "*SOLID SECTION";
 const AMPLITUDE: &str = "*AMPLITUDE";
 
 /// A material that is being read.
@@ -85,66 +84,6 @@ impl Builder<'_> {
                 density: draft.density,
             });
         }
-    }
-
-    pub(super) fn build_sections(&mut self, layout: &Layout<'_>) {
-        let mut owner: Vec<Option<(MaterialId, At)>> = vec![None; self.model.mesh.elements.len()];
-        let mut sound = true;
-        for card in layout.model.iter().filter(|card| card.keyword.name == SECTION) {
-            let (Some(set), Some(material)) = (card.parameters.value("ELSET"), card.parameters.value("MATERIAL"))
-            else {
-                sound = false;
-                continue;
-            };
-            let set = self.element_sets.refer(set, card.at, SECTION, self.report);
-            // A faulty material is still the material of its elements.
-            let known = self.materials.find(material).filter(|&position| self.materials.is_faulty(position));
-            let material = known.or_else(|| self.materials.refer(material, card.at, SECTION, self.report));
-            if let Some(position) = material {
-                self.materials.mark_used(position);
-            }
-            let (Some(set), Some(material)) = (set, material) else {
-                sound = false;
-                continue;
-            };
-            let material = MaterialId(material);
-            let section = SolidSection { element_set: SetId(set), material };
-            let elements = &self.model.mesh.element_sets[set as usize];
-            if elements.elements.is_empty() {
-                let message = format!("element set {} is empty", elements.name);
-                self.report.warning(card.at, SECTION, message, "the section has no effect");
-            }
-            if !self.budget.take(elements.elements.len(), card.at, SECTION, self.report) {
-                break;
-            }
-            for element in &elements.elements {
-                match owner[element.index()] {
-                    Some((other, _)) if other != material => {
-                        let label = self.model.mesh.element_labels[element.index()];
-                        let message =
-                            format!("element {label} is of material {} already", self.materials.written(other.0));
-                        self.report.error(card.at, SECTION, message, "give each element one section");
-                    }
-                    Some(_) => {}
-                    None => owner[element.index()] = Some((material, card.at)),
-                }
-            }
-            self.model.sections.push(section);
-        }
-        let bare = |(position, owner): (usize, &Option<_>)| owner.is_none().then_some(position);
-        let without: Vec<usize> = owner.iter().enumerate().filter_map(bare).collect();
-        if let (Some(&first), true) = (without.first(), sound) {
-            let label = self.model.mesh.element_labels[first];
-            let message = format!("{} elements have no section, the first is element {label}", without.len());
-            self.report.error(
-                self.element_at[first],
-                "*ELEMENT",
-                message,
-                "give their set a *SOLID SECTION with a material",
-            );
-        }
-        self.model.mesh.element_materials =
-            owner.iter().map(|owner| owner.map_or(MaterialId(0), |(material, _)| material)).collect();
     }
 
     pub(super) fn build_amplitudes(&mut self, layout: &Layout<'_>) {

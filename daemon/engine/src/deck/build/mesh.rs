@@ -7,7 +7,7 @@ use crate::model::{Dialect, ELEMENT_NODES_MAX, ElementId, ElementKind, ElementSh
 use super::super::card::{Deck, ElementTable, NodeTable};
 use super::super::report::{At, Report};
 use super::names::Labels;
-use crate::element::{Coordinates, jacobian_min};
+use crate::element::{Coordinates, connector, jacobian_min};
 
 const NODE: &str = "*NODE";
 const ELEMENT: &str = "*ELEMENT";
@@ -194,24 +194,34 @@ fn resolve_nodes(
     for i in 1..labels.len() {
         if labels[..i].contains(&labels[i]) {
             let message = format!("element {label} uses node {} twice", labels[i]);
-            let remedy = format!(
-                "collapsed elements are not solved: give {} different nodes, or use C3D6 or C3D4",
-                labels.len()
-            );
+            let remedy = if kind.is_solid() {
+                format!("collapsed elements are not solved: give {} different nodes, or use C3D6 or C3D4", labels.len())
+            } else {
+                "give two different nodes; to the ground leads a SPRING1".into()
+            };
             report.error(at, ELEMENT, message, remedy);
             return None;
         }
     }
-    // Positive wherever it is evaluated: coordinates are bounded, so it is never NaN.
     let coordinates = Coordinates::of(nodes[..labels.len()].iter().map(|node| mesh.nodes[node.index()]));
-    let jacobian = jacobian_min(kind, &coordinates);
-    if jacobian <= 0.0 {
-        let message =
-            format!("element {label} is inverted or distorted: its Jacobian is {jacobian:.3e} at an integration point");
-        report.error(at, ELEMENT, message, order_remedy(kind));
+    if let Some(fault) = shape_fault(kind, &coordinates) {
+        report.error(at, ELEMENT, format!("element {label} {fault}"), order_remedy(kind));
         return None;
     }
     Some(nodes)
+}
+
+/// Why an element of this shape has no stiffness.
+pub fn shape_fault(kind: ElementKind, coordinates: &Coordinates) -> Option<String> {
+    if kind.is_solid() {
+        // Positive wherever it is evaluated: coordinates are bounded, so it is never NaN.
+        let jacobian = jacobian_min(kind, coordinates);
+        return (jacobian <= 0.0)
+            .then(|| format!("is inverted or distorted: its Jacobian is {jacobian:.3e} at an integration point"));
+    }
+    // The line between the nodes gives the direction of these two.
+    let has_axis = matches!(kind, ElementKind::T3D2 | ElementKind::SpringA);
+    (has_axis && connector::length(coordinates) == 0.0).then(|| "has no length: its nodes are at the same place".into())
 }
 
 /// How the nodes of an element are listed.

@@ -2,6 +2,7 @@
 
 mod budget;
 mod contact;
+mod equations;
 mod layout;
 mod loads;
 mod materials;
@@ -10,11 +11,12 @@ mod names;
 mod output;
 mod prescribed;
 mod regions;
+mod sections;
 mod sets;
 mod steps;
 mod surfaces;
 
-use crate::model::{Boundary, Dialect, Model, Region, SurfaceId};
+use crate::model::{Boundary, Dialect, Model, Region, SurfaceId, SurfaceKind};
 
 use super::card::Deck;
 use super::report::{At, Report};
@@ -44,6 +46,8 @@ struct Builder<'r> {
     /// Lines of the elements.
     element_at: Vec<At>,
     budget: Budget,
+    /// Lines of the equations.
+    equation_at: Vec<At>,
     /// Surfaces of the contact pairs.
     pairs: FxHashSet<(SurfaceId, SurfaceId)>,
     /// Lines of the boundaries of each step.
@@ -74,6 +78,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         refused_elements,
         element_at: parts.element_at,
         budget: Budget::of(entities),
+        equation_at: Vec::new(),
         pairs: FxHashSet::default(),
         step_lines: Vec::new(),
         load_lines: Vec::new(),
@@ -86,12 +91,14 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_surfaces(&layout);
     builder.build_materials(&layout);
     builder.build_sections(&layout);
+    builder.build_equations(&layout);
     builder.build_interactions(&layout);
     builder.build_pairs(&layout);
     builder.build_amplitudes(&layout);
     builder.build_initial_boundaries(&layout);
     builder.build_steps(&layout);
     builder.check_prescribed(&layout);
+    builder.check_equations();
     builder.check_loads();
     if !layout.has_refused_keywords() {
         builder.check_unused();
@@ -144,11 +151,19 @@ impl Builder<'_> {
                 );
             }
         }
-        let mut in_element = vec![false; self.model.mesh.nodes.len()];
-        for (_, nodes) in self.model.mesh.elements.iter() {
-            nodes.iter().for_each(|node| in_element[node.index()] = true);
+        // Equations and node-based surfaces give a node a purpose too.
+        let mesh = &self.model.mesh;
+        let mut has_purpose = vec![false; mesh.nodes.len()];
+        let of_elements = mesh.elements.iter().flat_map(|(_, nodes)| nodes);
+        let of_surfaces = mesh.surfaces.iter().flat_map(|surface| match &surface.kind {
+            SurfaceKind::Nodes(nodes) => nodes.as_slice(),
+            SurfaceKind::Faces(_) => &[],
+        });
+        let of_equations = self.model.equations.iter().flat_map(|equation| &equation.terms).map(|(node, ..)| node);
+        for node in of_elements.chain(of_surfaces).chain(of_equations) {
+            has_purpose[node.index()] = true;
         }
-        let loose: Vec<_> = (in_element.iter().zip(&self.model.mesh.node_labels))
+        let loose: Vec<_> = (has_purpose.iter().zip(&self.model.mesh.node_labels))
             .filter(|(used, _)| !**used)
             .map(|(_, label)| *label)
             .collect();

@@ -78,8 +78,8 @@ impl Builder<'_> {
         let mut exposed: Vec<ElementId> = Vec::new();
         for &(label, face, at) in &members.labels {
             match self.element(label, at, SURFACE) {
-                Some(element) if face == 0 => exposed.push(element),
                 Some(element) => match self.without_face(&[element], face) {
+                    None if face == 0 => exposed.push(element),
                     None => faces.push(ElementFace { element, face: face - 1 }),
                     Some(message) => {
                         self.report.error(at, SURFACE, message, FACE_REMEDY);
@@ -98,15 +98,15 @@ impl Builder<'_> {
             if !self.budget.take(elements.len(), *at, SURFACE, self.report) {
                 break;
             }
-            match *face {
-                0 => exposed.extend(elements),
-                face => match self.without_face(elements, face) {
-                    None => faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 })),
-                    Some(message) => {
-                        self.report.error(*at, SURFACE, message, FACE_REMEDY);
-                        *sound = false;
-                    }
-                },
+            match (self.without_face(elements, *face), *face) {
+                (None, 0) => exposed.extend(elements),
+                (None, face) => {
+                    faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 }));
+                }
+                (Some(message), _) => {
+                    self.report.error(*at, SURFACE, message, FACE_REMEDY);
+                    *sound = false;
+                }
             }
         }
         // The search for free faces looks at every element of the mesh.
@@ -121,17 +121,16 @@ impl Builder<'_> {
 }
 
 impl Builder<'_> {
-    /// Says which of the elements has no such face, numbered from 1.
+    /// Says which of the elements has no such face, numbered from 1; 0 is any face.
     pub(super) fn without_face(&self, elements: &[ElementId], face: u8) -> Option<String> {
         let mesh = &self.model.mesh;
-        let kind = |element: ElementId| mesh.elements.kind(element.index());
-        let element = *elements.iter().find(|&&element| usize::from(face) > kind(element).shape().faces().len())?;
-        Some(format!(
-            "element {} of type {} has {} faces and no face {face}",
-            mesh.element_labels[element.index()],
-            kind(element).name(),
-            kind(element).shape().faces().len()
-        ))
+        let faces = |element: ElementId| mesh.elements.kind(element.index()).shape().faces().len();
+        let element = *elements.iter().find(|&&element| usize::from(face.max(1)) > faces(element))?;
+        let (label, kind) = (mesh.element_labels[element.index()], mesh.elements.kind(element.index()).name());
+        Some(match faces(element) {
+            0 => format!("element {label} of type {kind} has no faces"),
+            count => format!("element {label} of type {kind} has {count} faces and no face {face}"),
+        })
     }
 }
 
