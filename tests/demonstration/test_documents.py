@@ -181,6 +181,24 @@ def test_port_declarations_are_taken_alike_and_told(tmp_path):
     assert header == "step,increment,time,contact_force"
 
 
+@pytest.mark.parametrize("declared", [False, True])
+def test_check_lists_the_ports_of_a_run_and_prepares_nothing(tmp_path, declared):
+    deck = tmp_path / "blocks.inp"
+    deck.write_text((support.ROOT / "examples" / "two_blocks.inp").read_text())
+    if declared:
+        (tmp_path / "ports.toml").write_text('[[port]]\nport = "contact.SSL_SMA.CFN3"\nname = "force"\nunit = "N"\n')
+    environment = {**os.environ, "OVERCLOSURE_LOG": "overclosure=debug"}
+    checked = support.call("check", deck, env=environment)
+    ran = support.call("run", deck, "--out", tmp_path, env=environment)
+    assert (checked.returncode, ran.returncode) == (0, 0), (checked.stderr, ran.stderr)
+    assert "factor" in ran.stderr and "factor" not in checked.stderr
+    listed = re.findall(r"^(input|output) +(\S+): ", checked.stdout, re.MULTILINE)
+    header = (tmp_path / "blocks_ports.csv").read_text().splitlines()[0].split(",")
+    assert [name for kind, name in listed if kind == "output"] == header[3:]
+    assert [name for kind, name in listed if kind == "input"] == ["boundary.NTOP.3"]
+    assert ("force" in header) == declared
+
+
 def test_a_session_takes_the_declarations_beside_the_deck(tmp_path, endpoint):
     deck = tmp_path / "blocks.inp"
     deck.write_text((support.ROOT / "examples" / "two_blocks.inp").read_text())

@@ -1,7 +1,9 @@
 //! Output ports: which condensed results a deck offers, and where each comes from.
 
+use crate::diagnostic::{Diagnostic, Place};
 use crate::model::{Model, NodeId, SetId};
-use crate::port::{Port, Quantity};
+use crate::port::{Port, PortList, Quantity, inputs_of};
+use crate::port_config::PortConfig;
 use crate::solve::columns::{Column, merge};
 use crate::solve::supports::Supports;
 
@@ -62,6 +64,27 @@ pub struct Outputs {
     pub set_reactions: Vec<[Option<usize>; 3]>,
     /// Column of the reaction total of all supports, per direction: the audit.
     pub all_reactions: [Option<usize>; 3],
+}
+
+/// Inputs and outputs of a validated model as `ports.toml` declares them, without preparing it. Errors are those of the
+/// declarations: ports that the deck does not have, names that clash, text that is no TOML.
+pub fn ports_of(model: &Model, ports_toml: Option<&str>) -> Result<PortList, Vec<Diagnostic>> {
+    let outputs = Outputs::new(model, &Supports::new(model), &mut Vec::new());
+    declared(inputs_of(model), &outputs, ports_toml).map(|(ports, _)| ports)
+}
+
+/// Ports under their declared names, and the sources of the outputs that are left.
+pub fn declared(
+    inputs: Vec<Port>,
+    outputs: &Outputs,
+    ports_toml: Option<&str>,
+) -> Result<(PortList, Vec<Source>), Vec<Diagnostic>> {
+    let all = PortList { inputs, outputs: outputs.ports.clone() };
+    let Some(text) = ports_toml else { return Ok((all, outputs.sources.clone())) };
+    PortConfig::parse(text).and_then(|config| config.apply(all, &outputs.sources)).map_err(|messages| {
+        let as_error = |message| Diagnostic::error(Place::nowhere(), "ports.toml", message, "");
+        messages.into_iter().map(as_error).collect()
+    })
 }
 
 /// Node sets that any step asks output for, in order of definition.

@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::outputs::ports_of;
 pub use crate::procedure::loading::inputs_of;
 
 /// Dimension of a port's value, for units in other tools.

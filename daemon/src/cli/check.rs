@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use overclosure::deck;
 use overclosure::diagnostic::Diagnostic;
-use overclosure::model::Model;
 use overclosure::port::{self, Port, PortList};
-use overclosure::simulation::{PathChoice, PrepareOptions, PreparedModel};
+use overclosure::simulation::PreparedModel;
 
 use super::open::{WHAT_BECOMES_AN_INPUT, count, open_deck, read_ports, report};
 use super::{DialectArg, Exit, complain, print};
@@ -15,8 +14,8 @@ use super::{DialectArg, Exit, complain, print};
 /// Arguments of `overclosure check`.
 #[derive(Args)]
 #[command(after_help = "\
-Findings go to stderr, what was understood to stdout. Bodies that nothing holds are found too.
-Where port declarations apply, the deck is prepared as for a run, and outputs are listed with the inputs.")]
+Findings go to stderr, what was understood to stdout, with inputs and outputs under the names that port declarations give.
+Bodies that nothing holds are found too; nothing is factored, so that a large deck takes seconds.")]
 pub struct CheckArgs {
     /// The deck.
     deck: PathBuf,
@@ -43,13 +42,11 @@ fn examine(arguments: &CheckArgs) -> Result<String, Exit> {
     let ports_toml = ports_toml?;
     let mut diagnostics = opened.diagnostics;
     let mut text = deck::summary(&opened.model);
-    let (ports, found) = match ports_toml {
-        None => {
-            let inputs = port::inputs_of(&opened.model);
-            (PortList { inputs, outputs: Vec::new() }, PreparedModel::examine(&opened.model))
-        }
-        Some(_) => declared(opened.model, ports_toml),
-    };
+    let mut found = PreparedModel::examine(&opened.model);
+    let ports = port::ports_of(&opened.model, ports_toml.as_deref()).unwrap_or_else(|findings| {
+        found.extend(findings);
+        PortList::default()
+    });
     report(&found);
     diagnostics.extend(found);
     complain(&count(&arguments.deck, &diagnostics));
@@ -58,15 +55,6 @@ fn examine(arguments: &CheckArgs) -> Result<String, Exit> {
     }
     list(&mut text, &ports);
     Ok(text)
-}
-
-/// Ports under their declared names, and what was found. Declarations speak of outputs, which only preparation knows.
-fn declared(model: Model, ports_toml: Option<String>) -> (PortList, Vec<Diagnostic>) {
-    let options = PrepareOptions { path: PathChoice::Auto, threads: 1, ports_toml };
-    match PreparedModel::prepare(model, &options, &mut |_| {}) {
-        Ok(prepared) => (prepared.ports().clone(), prepared.warnings().to_vec()),
-        Err(findings) => (PortList::default(), findings),
-    }
 }
 
 /// The ports of the deck, by their names on the command line, on the wire and in an FMU.

@@ -104,10 +104,13 @@ impl Job {
         let ports_toml = read_ports(ports.as_deref(), &deck);
         let opened = open_deck(&deck, dialect)?;
         let ports_toml = ports_toml?;
-        if ports_toml.is_none() {
-            // A misspelt name need not wait for the factorisation. Declared names are known only after it.
-            settings::resolve(&assignments, &port::inputs_of(&opened.model))?;
-        }
+        // A misspelt name need not wait for the factorisation.
+        let ports = port::ports_of(&opened.model, ports_toml.as_deref()).map_err(|findings| {
+            report(&findings);
+            complain(&super::open::count(&deck, &findings));
+            Exit::InputWrong
+        })?;
+        let settings = settings::resolve(&assignments, &ports.inputs)?;
         let options = PrepareOptions { path: path.into(), threads, ports_toml };
         let mut diagnostics = opened.diagnostics;
         let prepared = PreparedModel::prepare(opened.model, &options, &mut |phase| {
@@ -128,7 +131,7 @@ impl Job {
         let mut simulation = Simulation::new(Arc::clone(&prepared));
         let origin = progress.hidden_while(|| {
             let origin = restart.map(|restart| restart.apply(&mut simulation)).transpose()?;
-            settings::apply(settings::resolve(&assignments, &prepared.ports().inputs)?, &mut simulation)?;
+            settings::apply(settings, &mut simulation)?;
             if let Some(origin) = origin.as_ref().filter(|_| !quiet) {
                 complain(&restart::told(origin));
             }
