@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._call import Patience, call, open_session
-from ._deck import read_deck
+from ._deck import read_deck, read_ports
 from ._errors import Fault
 from ._messages import (
     FaultDetails,
@@ -155,12 +155,13 @@ class Client:
             dialect: ``abaqus`` or ``calculix``.
             path: solver path, ``auto``, ``dense`` or ``sparse``.
             threads: for the preparation; the numbers do not depend on it.
-            ports_toml: text of a ``ports.toml``.
+            ports_toml: text of a ``ports.toml``. Unless given, and for a deck at a path: that of ``DECKNAME.ports.toml``
+                or ``ports.toml`` beside the deck, the first that is there. An empty text keeps the names of the deck.
             magnitudes: inputs whose deck magnitude is replaced while the deck's amplitude is kept.
 
         Raises:
             Fault: ``deck_refused`` with every diagnostic in ``findings``, ``preload_stopped``, ...
-            OSError: the file cannot be read.
+            OSError: a file cannot be read.
             IncludeError: a file that it includes cannot be put in.
 
         """
@@ -168,6 +169,8 @@ class Client:
             text, name = deck, ""
         else:
             text, name = read_deck(Path(deck)), Path(deck).name
+            if ports_toml is None:
+                ports_toml = read_ports(Path(deck))
         request = OpenRequest(
             token=uuid.uuid4().hex,
             label=name if label is None else label,

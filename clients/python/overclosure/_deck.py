@@ -1,11 +1,16 @@
-"""Reading a deck from files: over the wire it has no folder, so that the files it includes are put in their places."""
+"""Reading a deck from files.
+
+Over the wire a deck has no folder: the files it includes are put in their places, the port declarations beside it sent along.
+"""
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 
 from ._errors import IncludeError
 
+_LOG = logging.getLogger("overclosure")
 # The limits of the daemon's own reader.
 _DEPTH_MAX = 16
 _INCLUDES_MAX = 10_000
@@ -23,6 +28,22 @@ def read_deck(path: Path) -> str:
 
     """
     return _Reader().read(path, path.read_bytes())
+
+
+def read_ports(deck: Path) -> str | None:
+    """Read the port declarations that apply to a deck unless others are given.
+
+    As for the command line: ``DECKNAME.ports.toml``, else ``ports.toml``, both beside the deck; none where neither is there.
+
+    Raises:
+        OSError: the file is there and cannot be read.
+
+    """
+    for path in (deck.with_suffix(".ports.toml"), deck.with_name("ports.toml")):
+        if path.is_file():
+            _LOG.info("ports: names and units from %s", path)
+            return path.read_text(encoding="utf-8")
+    return None
 
 
 class _Reader:

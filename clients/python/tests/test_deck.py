@@ -65,3 +65,23 @@ def test_a_deck_in_several_files_gives_the_same_numbers_and_as_text_is_refused(c
     with pytest.raises(overclosure.Fault, match="INCLUDE") as caught:
         client.open(parts)
     assert caught.value.code == "deck_refused"
+
+
+def test_port_declarations_beside_the_deck_are_taken_as_by_the_command_line(client, deck, folder, caplog):
+    def inputs(source, **options):
+        with client.open(source, **options) as session:
+            return [port.name for port in session.ports.inputs]
+
+    declare = '[[port]]\nport = "boundary.NTOP.3"\nname = "{}"\n'
+    copy = folder / "blocks.v2.inp"
+    copy.write_text(deck.read_text())
+    assert inputs(copy) == ["boundary.NTOP.3"]
+    (folder / "ports.toml").write_text(declare.format("of_the_folder"))
+    with caplog.at_level("INFO", "overclosure"):
+        assert inputs(copy) == ["of_the_folder"]
+    assert str(folder / "ports.toml") in caplog.text
+    assert inputs(copy, ports_toml="") == ["boundary.NTOP.3"]
+    assert inputs(copy.read_text()) == ["boundary.NTOP.3"]
+    (folder / "blocks.v2.ports.toml").write_text(declare.format("of_the_deck"))
+    assert inputs(str(copy)) == ["of_the_deck"]
+    assert inputs(copy, ports_toml=declare.format("given")) == ["given"]
