@@ -155,8 +155,8 @@ class Client:
             dialect: ``abaqus`` or ``calculix``.
             path: solver path, ``auto``, ``dense`` or ``sparse``.
             threads: for the preparation; the numbers do not depend on it.
-            ports_toml: text of a ``ports.toml``. Unless given, and for a deck at a path: that of ``DECKNAME.ports.toml``
-                or ``ports.toml`` beside the deck, the first that is there. An empty text keeps the names of the deck.
+            ports_toml: text of a ``ports.toml``. Unless given, a deck at a path takes ``DECKNAME.ports.toml`` or
+                ``ports.toml`` beside it, the first that is there. An empty text keeps the names of the deck.
             magnitudes: inputs whose deck magnitude is replaced while the deck's amplitude is kept.
 
         Raises:

@@ -1,6 +1,7 @@
 """Reading a deck from files.
 
-Over the wire a deck has no folder: the files it includes are put in their places, the port declarations beside it sent along.
+Over the wire a deck has no folder: the files it includes are put in their places, and the port declarations beside it
+are sent along.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ def read_deck(path: Path) -> str:
 def read_ports(deck: Path) -> str | None:
     """Read the port declarations that apply to a deck unless others are given.
 
-    As for the command line: ``DECKNAME.ports.toml``, else ``ports.toml``, both beside the deck; none where neither is there.
+    As for the command line: ``DECKNAME.ports.toml``, else ``ports.toml``, both beside the deck; none where neither is
+    there.
 
     Raises:
         OSError: the file is there and cannot be read.
