@@ -25,11 +25,14 @@ def ours(path, folder):
 def exact(deck):
     """Our law and our areas: a node of a node-based surface stands for 1 unless the interaction says otherwise."""
     areas = np.ones(len(deck.areas)) if deck.node_based else deck.areas
-    return springs.solve(deck, springs.Exact(deck.law[0]), areas)
+    law = springs.Exact(deck.law[0]) if deck.kind == "LINEAR" else springs.Exponential(*deck.law)
+    return springs.solve(deck, law, areas)
 
 
-def smoothed(deck):
+def calculix(deck):
     """CalculiX's law and its areas."""
+    if deck.kind == "EXPONENTIAL":
+        return springs.solve(deck, springs.Exponential(*deck.law), deck.areas)
     return springs.solve(deck, springs.Smoothed(deck.law[0], deck.law[1], deck.areas), deck.areas)
 
 

@@ -22,7 +22,8 @@ class SmallDeck:
     """The model. rows: overclosure that displacements add, one row per contact point; initial: overclosure at the start.
 
     areas: what a point stands for in CalculiX: its part of the secondary faces; for a node-based surface a quarter of every
-    outer face at the node, whatever the surface interaction says.
+    outer face at the node, whatever the surface interaction says. law: LINEAR slope and largest tension; EXPONENTIAL clearance
+    where it ends, pressure at zero clearance.
     """
 
     labels: list[int]
@@ -33,6 +34,7 @@ class SmallDeck:
     rows: np.ndarray
     initial: np.ndarray
     areas: np.ndarray
+    kind: str
     law: list[float]
     node_based: bool
 
@@ -82,8 +84,9 @@ def read(text):
     bricks = list(mesh.elements.values())
     blocks = fe.stiffnesses(mesh.coordinates[np.array(bricks)], fe.elasticity(young, poisson), True)
     ((behavior, [law]),) = deck.each("SURFACE BEHAVIOR")
-    if behavior["PRESSURE-OVERCLOSURE"] != "LINEAR":
-        raise ValueError("the comparison reads the linear law only")
+    kind = behavior["PRESSURE-OVERCLOSURE"]
+    if kind not in ("LINEAR", "EXPONENTIAL"):
+        raise ValueError(f"the comparison does not read the law {kind}")
     rows, initial, areas, node_based = contact_points(deck, mesh)
     return SmallDeck(
         labels=list(mesh.index),
@@ -94,6 +97,7 @@ def read(text):
         rows=rows,
         initial=initial,
         areas=areas,
+        kind=kind,
         law=[float(word) for word in law],
         node_based=node_based,
     )

@@ -1,9 +1,10 @@
-"""Statics of a small deck with the contact law of CalculiX's node-to-surface springs, or with ours; dense Newton method.
+"""Statics of a small deck with the contact laws of CalculiX's node-to-surface springs, or with ours; dense Newton method.
 
 CalculiX 2.20, LINEAR with the items K and s:  p = K h (1/2 + atan(h / e) / pi),  e = pi s / K,  also for h < 0, where it pulls
 with up to s.
 A spring exists only where the clearance is below c0 sqrt(area), c0 = 0.001 unless a third item gives it.
 Ours:  p = K h for h > 0, else 0.
+EXPONENTIAL, the same in both:  p = p0 100^(h / c0),  cut to 0 below h = -c0.
 """
 
 import math
@@ -63,6 +64,28 @@ class Smoothed:
         return np.where(self.exists(h), slope, 0.0)
 
 
+@dataclass(frozen=True)
+class Exponential:
+    """p = p0 100^(h / c0) down to h = -c0."""
+
+    clearance: float
+    pressure_at_touch: float
+
+    @property
+    def slope(self):
+        """Slope at touch, for the start."""
+        return self.pressure_at_touch * math.log(100.0) / self.clearance
+
+    def pressure(self, h):
+        """Pressures."""
+        value = self.pressure_at_touch * np.exp(math.log(100.0) * np.minimum(h / self.clearance, 5.0))
+        return np.where(h > -self.clearance, value, 0.0)
+
+    def stiffness(self, h):
+        """Slopes."""
+        return self.pressure(h) * math.log(100.0) / self.clearance
+
+
 def free_basis(deck):
     """Displacements u = T q + u0 that keep supports and equations: T (dofs, free) and u0."""
     count = len(deck.forces)
@@ -86,7 +109,7 @@ def solve(deck, law, areas):
     rows = deck.rows @ basis
     start = deck.initial + deck.rows @ u0
     q = np.zeros(basis.shape[1])
-    # Closed everywhere at first: so a body that only contact holds is held.
+    # Every point a spring of that slope at first: so a body that only contact holds is held.
     tangent = np.full(len(areas), law.slope)
     pressure, h = law.slope * start, start
     for _ in range(ITERATIONS_MAX):

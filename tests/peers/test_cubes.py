@@ -36,7 +36,7 @@ def recorded(name):
 @pytest.mark.parametrize("name", EXPECTED)
 def test_a_model_of_the_smoothed_springs_gives_the_recorded_displacements(name):
     deck = small_deck.read(dat.read_text(deck_path(name)))
-    displacements, _ = decks.smoothed(deck)
+    displacements, _ = decks.calculix(deck)
     assert dat.deviation(recorded(name), decks.by_node(deck, displacements)) < EXPECTED[name][1]
 
 
@@ -61,7 +61,7 @@ def test_a_table_of_the_smoothed_law_gives_the_recorded_displacements(tmp_path, 
     """Only where all points are closed: a table holds no tension."""
     text = dat.read_text(deck_path(name))
     deck = small_deck.read(text)
-    _, overclosures = decks.smoothed(deck)
+    _, overclosures = decks.calculix(deck)
     path = tmp_path / f"{name}.inp"
     path.write_text(decks.with_table(text, deck, 2.0 * overclosures.max()), encoding="ascii")
     computed, _ = decks.ours(path, tmp_path)
