@@ -246,6 +246,20 @@ mod tests {
     }
 
     #[test]
+    fn bars_springs_and_masses_are_lines_and_vertices() {
+        use crate::model::{ElementKind, NodeId};
+        let mut mesh = Mesh::default();
+        let list = |count: u32| (0..count).map(NodeId).collect::<Vec<_>>();
+        for kind in [ElementKind::C3D4].into_iter().chain(ElementKind::CONNECTORS) {
+            mesh.elements.push(kind, &list(kind.node_count() as u32));
+        }
+        // VTK_TETRA, then T3D2 and SPRINGA: VTK_LINE, SPRING1: VTK_VERTEX, SPRING2: VTK_LINE, MASS: VTK_VERTEX.
+        assert_eq!(types(&mesh), [10, 3, 3, 1, 3, 1]);
+        assert_eq!(offsets(&mesh), [4, 6, 8, 9, 11, 12]);
+        assert_eq!(connectivity(&mesh), [0, 1, 2, 3, 0, 1, 0, 1, 0, 0, 1, 0]);
+    }
+
+    #[test]
     fn the_list_is_complete_after_every_frame_and_old_frames_are_gone() {
         let directory = tempfile::tempdir().unwrap();
         let stale = directory.path().join("job_00042.vtu");

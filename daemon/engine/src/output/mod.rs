@@ -12,6 +12,7 @@ mod number;
 mod plan;
 mod port_table;
 mod printed;
+mod printed_table;
 mod report;
 mod snapshots;
 mod vtu;
@@ -28,7 +29,7 @@ pub use crate::restart::Standing;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::model::{Model, Procedure, RestartRequest, Step};
+use crate::model::{ElementId, Model, Procedure, RestartRequest, Step};
 use crate::simulation::{IncrementReport, NodalSolution, PreparedModel, Simulation, Watch};
 
 use contact_table::ContactTable;
@@ -137,7 +138,8 @@ impl ResultWriter {
         let fields = plan.needs_solution().then(|| {
             let solution = simulation.recover();
             let stress = if plan.needs_stress() { simulation.nodal_stress(&solution) } else { Vec::new() };
-            NodalFields { solution, stress }
+            let axial = if plan.element_prints.is_empty() { Vec::new() } else { axial(simulation, &solution) };
+            NodalFields { solution, stress, axial }
         });
         if let Some(fields) = &fields {
             self.nodes.rows(model, increment, &plan.node_rows, &fields.solution)?;
@@ -184,8 +186,18 @@ fn period(procedure: &Procedure) -> f64 {
     }
 }
 
-/// What one recovery gives; stress is empty when nothing needs it.
+/// What one recovery gives; stress and axial values are empty when nothing needs them.
 struct NodalFields {
     solution: NodalSolution,
     stress: Vec<[f64; 6]>,
+    /// Stress of each bar and force of each spring, positive in tension, by element.
+    axial: Vec<(ElementId, f64)>,
+}
+
+/// Stress of each bar and force of each spring, by element.
+fn axial(simulation: &Simulation, solution: &NodalSolution) -> Vec<(ElementId, f64)> {
+    let mut elements: Vec<ElementId> = simulation.prepared().model().mesh.connectors.keys().copied().collect();
+    elements.sort_unstable();
+    let value = |element| Some((element, simulation.element_stress(solution, element).first()?[0]));
+    elements.into_iter().filter_map(value).collect()
 }

@@ -7,8 +7,11 @@ use super::contact_table::status_code;
 use super::file::{OutputError, TextFile};
 use super::number::printed;
 use super::plan::Plan;
+use super::printed_table::{Entity, Table};
 use super::{NodalFields, period, step_of};
-use crate::model::{ElementRequest, Model, NodeId, NodeRequest, Procedure, Step, SurfaceId, Totals};
+use crate::model::{
+    ElementId, ElementKind, ElementRequest, Model, NodeId, NodeRequest, Procedure, Step, SurfaceId, Totals,
+};
 use crate::simulation::{ContactPointResult, HistoryRow, IncrementReport, PreparedModel};
 
 /// Writes the summary of an increment and the tables that are due.
@@ -59,7 +62,7 @@ impl Printed {
         if let Some(fields) = fields.filter(|_| !plan.element_prints.is_empty()) {
             text.push_str("\n\n                              E L E M E N T   O U T P U T\n");
             for request in &plan.element_prints {
-                stress_table(&mut text, model, request, &fields.stress);
+                stress_tables(&mut text, model, request, fields);
             }
         }
         if !plan.node_prints.is_empty() {
@@ -100,7 +103,9 @@ impl Printed {
                     _ => continue,
                 };
                 let columns = [1, 2, 3].map(|i| format!("{variable}{i}"));
-                let mut table = Table::new(&format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}"), None, &columns);
+                let columns = columns.each_ref().map(String::as_str);
+                let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}");
+                let mut table = Table::new(&heading, Entity::Node, None, &columns);
                 for node in nodes {
                     table.row(model.mesh.node_labels[node.index()], None, &values[node.index()]);
                 }
@@ -163,7 +168,7 @@ fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
 fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &HistoryRow, contact: &[ContactPointResult]) {
     let model = prepared.model();
     text.push_str("\n\n                              C O N T A C T   O U T P U T\n");
-    let columns = ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"].map(String::from);
+    let columns = ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"];
     for (i, pair) in model.pairs.iter().enumerate() {
         let name = |surface: SurfaceId| &model.mesh.surfaces[surface.index()].name;
         let heading = format!(
@@ -171,7 +176,7 @@ fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &History
             name(pair.secondary),
             name(pair.primary)
         );
-        let mut table = Table::new(&heading, Some("STATUS"), &columns);
+        let mut table = Table::new(&heading, Entity::Node, Some("STATUS"), &columns);
         for (point, result) in prepared.contact_points().iter().zip(contact).filter(|(p, _)| p.pair as usize == i) {
             let ContactPointResult { status, clearance, pressure, shear, slip } = *result;
             let values = [pressure, shear[0], shear[1], clearance, slip[0], slip[1]];
@@ -189,83 +194,41 @@ fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &History
     }
 }
 
-fn stress_table(text: &mut String, model: &Model, request: &ElementRequest, stress: &[[f64; 6]]) {
+/// Stresses at the nodes of the solids of a request, then the values of its bars and springs.
+fn stress_tables(text: &mut String, model: &Model, request: &ElementRequest, fields: &NodalFields) {
     if !request.variables.iter().any(|v| v == "S") {
         return;
     }
     let mesh = &model.mesh;
-    let (whom, mut nodes): (String, Vec<NodeId>) = match request.set.map(|s| &mesh.element_sets[s.index()]) {
-        Some(set) => (
-            format!("ELEMENT SET {}", set.name),
-            set.elements.iter().flat_map(|e| mesh.elements.nodes(e.index())).copied().collect(),
-        ),
-        None => ("ALL ELEMENTS".to_owned(), mesh.elements.iter().flat_map(|(_, nodes)| nodes).copied().collect()),
-    };
+    let set = request.set.map(|s| &mesh.element_sets[s.index()]);
+    let whom = set.map_or_else(|| "ALL ELEMENTS".to_owned(), |set| format!("ELEMENT SET {}", set.name));
+    let is_member = |element: ElementId| set.is_none_or(|set| set.elements.binary_search(&element).is_ok());
+    let kinds = (0..).map(ElementId).zip(mesh.elements.iter());
+    let solids = kinds.filter(|(element, (kind, _))| kind.is_solid() && is_member(*element));
+    let mut nodes: Vec<NodeId> = solids.flat_map(|(_, (_, nodes))| nodes).copied().collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let columns = ["S11", "S22", "S33", "S12", "S13", "S23"].map(String::from);
-    let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR THE NODES OF {whom} (STRESSES AVERAGED AT NODES)");
-    let mut table = Table::new(&heading, None, &columns);
-    for node in nodes {
-        table.row(mesh.node_labels[node.index()], None, &stress[node.index()]);
+    if !nodes.is_empty() {
+        let columns = ["S11", "S22", "S33", "S12", "S13", "S23"];
+        let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR THE NODES OF {whom} (STRESSES AVERAGED AT NODES)");
+        let mut table = Table::new(&heading, Entity::Node, None, &columns);
+        for node in nodes {
+            table.row(mesh.node_labels[node.index()], None, &fields.stress[node.index()]);
+        }
+        table.finish(text);
     }
-    table.finish(text);
-}
-
-/// A table of nodes with the extremes of its columns.
-struct Table {
-    text: String,
-    status: bool,
-    /// Per column: (least, its node), (greatest, its node).
-    extremes: Vec<[(f64, u32); 2]>,
-}
-
-impl Table {
-    fn new(heading: &str, status: Option<&str>, columns: &[String]) -> Self {
-        let mut text = format!("\n   {heading}\n\n {:>11}", "NODE");
-        if let Some(status) = status {
-            let _ = write!(text, " {status:>6}");
+    for (bars, what, value) in [(true, "BARS", "STRESS"), (false, "SPRINGS", "FORCE")] {
+        let is_wanted = |element: ElementId| (mesh.elements.kind(element.index()) == ElementKind::T3D2) == bars;
+        let rows: Vec<_> = fields.axial.iter().filter(|(e, _)| is_wanted(*e) && is_member(*e)).collect();
+        if rows.is_empty() {
+            continue;
         }
-        for column in columns {
-            let _ = write!(text, "{column:>15}");
+        let heading =
+            format!("THE FOLLOWING TABLE IS PRINTED FOR THE {what} OF {whom} (S11: {value}, POSITIVE IN TENSION)");
+        let mut table = Table::new(&heading, Entity::Element, Some("PT"), &["S11"]);
+        for &&(element, value) in &rows {
+            table.row(mesh.element_labels[element.index()], Some("1"), &[value]);
         }
-        text.push_str("\n\n");
-        Self { text, status: status.is_some(), extremes: Vec::new() }
-    }
-
-    fn row(&mut self, label: u32, status: Option<&str>, values: &[f64]) {
-        let _ = write!(self.text, " {label:>11}");
-        if let Some(status) = status {
-            let _ = write!(self.text, " {status:>6}");
-        }
-        if self.extremes.is_empty() {
-            self.extremes = values.iter().map(|&v| [(v, label); 2]).collect();
-        }
-        for (&value, [least, greatest]) in values.iter().zip(&mut self.extremes) {
-            self.text.push_str(&printed(value));
-            if value < least.0 {
-                *least = (value, label);
-            }
-            if value > greatest.0 {
-                *greatest = (value, label);
-            }
-        }
-        self.text.push('\n');
-    }
-
-    fn finish(mut self, text: &mut String) {
-        let gap = if self.status { "       " } else { "" };
-        for (which, name) in [(1, "MAXIMUM"), (0, "MINIMUM")] {
-            let _ = write!(self.text, "\n {name:>11}{gap}");
-            for column in &self.extremes {
-                self.text.push_str(&printed(column[which].0));
-            }
-            let _ = write!(self.text, "\n {:>11}{gap}", "AT NODE");
-            for column in &self.extremes {
-                let _ = write!(self.text, "{:>15}", column[which].1);
-            }
-        }
-        self.text.push('\n');
-        text.push_str(&self.text);
+        table.finish(text);
     }
 }

@@ -74,8 +74,13 @@ impl Watch for StopAfter<'_> {
 
 /// Runs some of the four increments; returns the folder.
 fn solved(increments: u32) -> tempfile::TempDir {
+    solved_deck(DECK, increments)
+}
+
+/// The same for a variant of the deck.
+fn solved_deck(text: &str, increments: u32) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
-    let reading = deck::read_text(DECK, Dialect::Abaqus);
+    let reading = deck::read_text(text, Dialect::Abaqus);
     let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
     let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| ());
     let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
@@ -129,6 +134,36 @@ fn requests_decide_what_is_written() {
         assert!(printed.contains(part), "{part} is missing in\n{printed}");
     }
     assert_eq!(printed.matches("SUMMARY").count(), 3, "increments 2, 3 and 4");
+}
+
+#[test]
+fn bars_and_springs_are_printed_with_one_value_each() {
+    // From the bottom to the top, which comes down by 0.03 of the 2 between them.
+    let elements = "*ELEMENT, TYPE=T3D2, ELSET=BARS\n21,1,15\n*ELEMENT, TYPE=SPRINGA, ELSET=SPRINGS\n22,16,2\n\
+        *ELEMENT, TYPE=MASS, ELSET=MASSES\n23,16\n*MASS, ELSET=MASSES\n1.\n\
+        *SOLID SECTION, ELSET=BARS, MATERIAL=M\n0.5\n*SPRING, ELSET=SPRINGS\n\n10.\n*MATERIAL";
+    let requests = "*EL PRINT, ELSET=BARS\nS\n*EL PRINT, ELSET=MASSES\nS\n*EL PRINT\nS\n*END STEP";
+    let text = DECK.replacen("*MATERIAL", elements, 1).replacen("*END STEP", requests, 1);
+    let directory = solved_deck(&text, 4);
+    let printed = fs::read_to_string(directory.path().join("job.dat")).unwrap();
+    let last = printed.rsplit("SUMMARY").next().unwrap();
+    let tables: Vec<&str> = last.split("THE FOLLOWING TABLE IS PRINTED FOR THE ").collect();
+    let of = |what: &str| -> Vec<f64> {
+        let table = tables.iter().find(|table| table.starts_with(what)).unwrap_or_else(|| panic!("no {what}: {last}"));
+        let row = table.lines().nth(4).unwrap();
+        row.split_whitespace().map(|item| item.parse().unwrap()).collect()
+    };
+    for bars in ["BARS OF ELEMENT SET BARS (S11: STRESS", "BARS OF ALL ELEMENTS"] {
+        let [element, point, stress] = of(bars)[..] else { panic!("{last}") };
+        assert_eq!((element, point), (21.0, 1.0));
+        assert!((stress + 1000.0 * 0.03 / 2.0).abs() < 1e-9, "{stress}");
+    }
+    let [element, _, force] = of("SPRINGS OF ALL ELEMENTS (S11: FORCE")[..] else { panic!("{last}") };
+    assert!(element == 22.0 && (force + 10.0 * 0.03).abs() < 1e-9, "{last}");
+    let count = |what: &str| tables.iter().filter(|table| table.starts_with(what)).count();
+    let counts = [count("BARS"), count("SPRINGS"), count("NODES OF ALL"), count("NODES OF ELEMENT SET")];
+    assert_eq!(counts, [2, 1, 1, 0], "{last}");
+    assert!(last.contains("AT ELEMENT"));
 }
 
 #[test]
