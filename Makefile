@@ -1,6 +1,8 @@
 # make test   build everything, create the Python environment, run every check and test
 # make demo   the main job, three ways, with pictures in out/demo
 # make bench  timings against CalculiX (if installed), table in out/bench
+# make growth      time and memory of the punch from small to large, table and picture in out/bench
+# make increments  milliseconds per further increment of a deck that is set up
 #
 # Needs: Rust 1.90 or later, Python 3.11 or later with venv and pip, a C compiler.
 
@@ -13,7 +15,7 @@ WANTED := $(shell cat tests/requirements.txt clients/python/pyproject.toml | cks
 STAMP := $(VENV)/made-from-$(WANTED)
 PYTHON_CODE := tests examples benches clients/python
 
-.PHONY: all build env test test-rust test-python check demo bench clean
+.PHONY: all build env test test-rust test-python check demo bench growth increments clean
 
 all: build
 
@@ -48,6 +50,12 @@ demo: build env
 
 bench: build env
 	$(BIN)/python benches/bench.py --out out/bench
+
+growth: build env
+	$(BIN)/python benches/growth.py --out out/bench
+
+increments:
+	$(CARGO) bench -p overclosure --bench increments
 
 clean:
 	rm -rf $(VENV) out
