@@ -55,6 +55,7 @@ class Deck:
     second: tuple[dict[int, float], dict[int, float]] | None = None
     full_integration: bool = False
     increments: int = 1
+    kind: str = ""
 
     def point_labels(self):
         """Position of each contact point by (pair name, node label), in the order of the oracle's arrays."""

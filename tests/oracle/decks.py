@@ -33,19 +33,22 @@ def box(rng, low, high, divisions, jitter):
     return points + moves, number
 
 
+# Sides of a block: name, axis, end of the axis, face of its bricks.
+SIDES = [("b", 2, 0, 0), ("t", 2, 1, 1), ("x0", 0, 0, 5), ("x1", 0, 1, 3), ("y0", 1, 0, 2), ("y1", 1, 1, 4)]
+
+
 def bricks(divisions, number):
-    """Elements of the grid, and the faces at the bottom (S1) and at the top (S2)."""
-    elements, bottom, top = [], [], []
+    """Elements of the grid, and the faces on each of its sides."""
+    elements, faces = [], {name: [] for name, *_ in SIDES}
     for k in range(divisions[2]):
         for j in range(divisions[1]):
             for i in range(divisions[0]):
                 ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
-                if k == 0:
-                    bottom.append((len(elements), 0))
-                if k == divisions[2] - 1:
-                    top.append((len(elements), 1))
+                for name, axis, end, face in SIDES:
+                    if (i, j, k)[axis] == (divisions[axis] - 1 if end else 0):
+                        faces[name].append((len(elements), face))
                 elements.append([number[a, b, c] for c in (k, k + 1) for a, b in ring])
-    return elements, bottom, top
+    return elements, faces
 
 
 class Builder:
@@ -59,7 +62,7 @@ class Builder:
     def block(self, low, high, divisions, rough_bottom, rough_top):
         """Adds a block; `rough_*` is the largest move of contact face nodes along the normal [length]."""
         points, number = box(self.rng, np.array(low), np.array(high), np.array(divisions), 0.12)
-        elements, bottom, top = bricks(divisions, number)
+        elements, faces = bricks(divisions, number)
         for level, rough in ((0, rough_bottom), (divisions[2], rough_top)):
             layer = [n for (_, _, k), n in number.items() if k == level]
             points[layer, 2] += self.rng.uniform(-rough, rough, len(layer))
@@ -68,9 +71,7 @@ class Builder:
         self.count += len(points)
         self.elements += [[n + first_node for n in e] for e in elements]
         self.bodies.append(list(range(first_element, len(self.elements))))
-        self.faces.append(
-            {name: [(e + first_element, f) for e, f in faces] for name, faces in (("b", bottom), ("t", top))}
-        )
+        self.faces.append({name: [(e + first_element, f) for e, f in side] for name, side in faces.items()})
         return {key: n + first_node for key, n in number.items()}
 
 
@@ -161,18 +162,24 @@ def hold(rng, deck, holders, rotation):
                 deck.fixed[3 * node + d] = float(push[d] + tilt)
 
 
-def load(rng, deck):
-    """Any of: nodal forces, pressure on element faces, pressure on a surface, gravity."""
+def load(rng, deck, size=1.0):
+    """Any of: nodal forces, pressure on element faces, pressure on a surface, gravity; all of them times a size."""
     if rng.random() < 0.5:
         for node in rng.choice(len(deck.coordinates), 2, replace=False):
-            deck.nodal_forces[3 * int(node) + int(rng.integers(3))] = float(rng.uniform(-3.0, 3.0))
+            deck.nodal_forces[3 * int(node) + int(rng.integers(3))] = size * float(rng.uniform(-3.0, 3.0))
     for target in (deck.face_pressures, deck.surface_pressures):
         if rng.random() < 0.4:
-            target.append((int(rng.integers(len(deck.elements))), int(rng.integers(6)), float(rng.uniform(-4.0, 8.0))))
+            target.append(
+                (int(rng.integers(len(deck.elements))), int(rng.integers(6)), size * float(rng.uniform(-4.0, 8.0)))
+            )
     if rng.random() < 0.4:
         direction = rng.normal(size=3)
         deck.gravities.append(
-            (int(rng.integers(len(deck.bodies))), float(rng.uniform(1.0, 10.0)), direction / np.linalg.norm(direction))
+            (
+                int(rng.integers(len(deck.bodies))),
+                size * float(rng.uniform(1.0, 10.0)),
+                direction / np.linalg.norm(direction),
+            )
         )
 
 

@@ -56,41 +56,37 @@ def state_count(law):
     return 1 + max(1, len(law.segments))
 
 
+def pieces(law, weight, free, area):
+    """Per state of a point: factors of its own force and of its row of W, right-hand side, least and largest h, least F."""
+    rows = [(1.0, 0.0, 0.0, -np.inf, law.onset, -np.inf)]
+    if not law.segments:
+        rows.append((0.0, 1.0 / weight, free / weight, -np.inf, np.inf, 0.0))
+    for piece in law.segments:
+        slope = area * piece.slope
+        rows.append((1.0, slope, area * piece.offset + slope * free, piece.lower, piece.upper, -np.inf))
+    return np.array(rows)
+
+
 def solve(compliance, free, areas, laws):
     """Forces and overclosures of the accepted combination, and the number of combinations tried.
 
     Raises ArithmeticError when none is acceptable or two acceptable ones differ: both would be a mistake in the deck.
     """
     count = len(free)
-    states = itertools.product(*(range(state_count(law)) for law in laws))
+    choices = [pieces(*point) for point in zip(laws, np.diag(compliance), free, areas, strict=True)]
+    states = itertools.product(*(range(len(rows)) for rows in choices))
     length = max(np.abs(free).max(), 1e-12)
     force = length / np.diag(compliance).min()
     accepted, tried = [], 0
     while batch := list(itertools.islice(states, CHUNK)):
         tried += len(batch)
-        matrix = np.tile(np.eye(count), (len(batch), 1, 1))
-        right = np.zeros((len(batch), count))
-        lower = np.full((len(batch), count), -np.inf)
-        upper = np.full((len(batch), count), np.inf)
-        tension = np.full((len(batch), count), -np.inf)
-        for row, combination in enumerate(batch):
-            for i, state in enumerate(combination):
-                law = laws[i]
-                if state == 0:
-                    upper[row, i] = law.onset
-                elif not law.segments:
-                    matrix[row, i] = compliance[i] / compliance[i, i]
-                    right[row, i] = free[i] / compliance[i, i]
-                    tension[row, i] = 0.0
-                else:
-                    piece = law.segments[state - 1]
-                    matrix[row, i] += areas[i] * piece.slope * compliance[i]
-                    right[row, i] = areas[i] * (piece.offset + piece.slope * free[i])
-                    lower[row, i], upper[row, i] = piece.lower, piece.upper
+        chosen = np.stack([rows[states] for rows, states in zip(choices, np.array(batch).T, strict=True)], axis=1)
+        own, coupled, right, lower, upper, least = np.moveaxis(chosen, 2, 0)
+        matrix = own[:, :, None] * np.eye(count) + coupled[:, :, None] * compliance
         forces = np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
         overclosures = free - forces @ compliance
         slack = 1e-11 * length
-        good = (overclosures >= lower - slack) & (overclosures <= upper + slack) & (forces >= tension - 1e-11 * force)
+        good = (overclosures >= lower - slack) & (overclosures <= upper + slack) & (forces >= least - 1e-11 * force)
         for row in np.flatnonzero(good.all(axis=1)):
             accepted.append((forces[row], overclosures[row]))
     if not accepted:

@@ -1,8 +1,5 @@
 """The solver against brute force on seeded random small decks."""
 
-import multiprocessing
-import os
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
 import numpy as np
@@ -14,26 +11,11 @@ from oracle import fe, totals
 from oracle.comparison import compare
 from oracle.decks import random_deck
 from oracle.enumeration import hard, linear, solve, tabular
+from oracle.parallel import in_parallel
 
 DECKS = 500
 EXPONENTIAL_DECKS = 60
 TOLERANCE = 1e-9
-
-
-def in_parallel(task, seeds):
-    """Two processes, one thread each."""
-    names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-    before = {name: os.environ.get(name) for name in names}
-    os.environ.update(dict.fromkeys(names, "1"))
-    try:
-        with ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as pool:
-            return list(pool.map(task, seeds, chunksize=10))
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
 
 
 def failures(reports):
