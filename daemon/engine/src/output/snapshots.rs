@@ -98,7 +98,11 @@ fn replace(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.write_all(bytes)?;
     file.sync_all()?;
     fs::rename(&temporary, path)?;
-    File::open(directory)?.sync_all()
+    match File::open(directory)?.sync_all() {
+        // Some network file systems keep names safe by themselves and do not take the question.
+        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Ok(()),
+        synchronised => synchronised,
+    }
 }
 
 /// Snapshots of an earlier run, and what a killed one left of the next.
