@@ -297,15 +297,72 @@ fn nonsense_from_outside_is_refused() {
     assert!(s.field("XYZ").is_err());
 }
 
-#[test]
-fn a_body_that_only_contact_holds_is_refused_by_name() {
-    let mut model = column(NormalBehavior::Hard, 0.08);
+/// The column without its support in direction 3, its top loaded by forces instead.
+fn loose_column(normal: NormalBehavior, force: f64) -> Model {
+    let mut model = column(normal, 0.0);
     model.steps[0].boundaries.clear();
-    let Err(errors) = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}) else {
+    model.steps[0].loads = vec![Load {
+        region: Region::Set(SetId(0)),
+        region_name: "TOP".into(),
+        kind: LoadKind::Concentrated { nodes: (12..16).map(NodeId).collect(), direction: 2 },
+        magnitude: force / 4.0,
+        amplitude: None,
+        place: Place::nowhere(),
+    }];
+    model
+}
+
+/// B01: p = F / A inverted on each law; A = 2.
+#[test]
+fn a_column_that_only_contact_holds_meets_the_closed_form_of_each_law() {
+    let linear = NormalBehavior::Softened(PressureOverclosure::Linear(Linear::new(250.0).expect("valid")));
+    let table = Tabular::new(&[(0.0, 0.0), (2.0, 0.01), (10.0, 0.02), (40.0, 0.03)]).expect("valid");
+    let tabular = NormalBehavior::Softened(PressureOverclosure::Tabular(table));
+    let cases = [
+        (NormalBehavior::Hard, 0.0),
+        (linear, 0.06),
+        (tabular, 0.021_666_666_666_666_667),
+        (exponential(), 0.004_933_325_857_292_93),
+    ];
+    for (normal, overclosure) in cases {
+        let model = loose_column(normal.clone(), -30.0);
+        let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("pressed");
+        let mut s = Simulation::new(Arc::new(prepared));
+        assert_eq!(s.advance(1.0, &mut ()), Ok(AdvanceOutcome::Reached));
+        for point in s.contact_results() {
+            assert!((point.pressure - 15.0).abs() <= 1e-10 * 15.0, "{normal:?}: {point:?}");
+            assert!((point.clearance + overclosure).abs() <= 1e-12, "{normal:?}: {point:?}");
+        }
+        // The top has gone down by the overclosure and F L / (E A).
+        let down = -(overclosure + 30.0 / 1000.0);
+        assert!((output(&s, "node.TOP.U3") - down).abs() <= 1e-12, "{normal:?}");
+        assert!((s.recover().displacement[12][2] - down).abs() <= 1e-12, "{normal:?}");
+        assert_eq!(s.audit(), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_body_pulled_off_its_contact_is_stopped_by_name_and_motion() {
+    let prepared = PreparedModel::prepare(loose_column(exponential(), 5.0), &PrepareOptions::default(), &mut |_| {})
+        .expect("loose");
+    let mut s = Simulation::new(Arc::new(prepared));
+    let Ok(AdvanceOutcome::Stopped { reason }) = s.advance(1.0, &mut ()) else { panic!("accepted") };
+    assert!(reason.contains("COLUMN") && reason.contains("translation along 3"), "{reason}");
+}
+
+#[test]
+fn a_loaded_body_that_nothing_touches_is_refused_and_an_unloaded_one_warned_of() {
+    let mut model = loose_column(NormalBehavior::Hard, -5.0);
+    model.pairs.clear();
+    let Err(errors) = PreparedModel::prepare(model.clone(), &PrepareOptions::default(), &mut |_| {}) else {
         panic!("accepted")
     };
     let text = errors[0].to_string();
     assert!(text.contains("COLUMN") && text.contains("translation along 3"), "{text}");
+    model.steps[0].loads.clear();
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("unloaded");
+    let text = prepared.warnings()[0].to_string();
+    assert!(text.contains("COLUMN") && text.contains("stays where it is"), "{text}");
 }
 
 #[test]

@@ -2,20 +2,26 @@
 
 use crate::contact::points::{self, ContactPoint};
 use crate::diagnostic::{Diagnostic, Place};
-use crate::model::Model;
+use crate::model::{Model, NodeId};
 use crate::procedure::loading::Loading;
+use crate::solve::constraints::Constraints;
+use crate::solve::floating::Floating;
+use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
-use crate::solve::rigid;
-use crate::solve::supports::Supports;
+use crate::solve::parts::Sample;
 
 /// A model that can be prepared, with what was learnt on the way.
 pub struct Examined {
-    /// Prescribed directions.
-    pub supports: Supports,
+    /// Prescribed and dependent directions.
+    pub constraints: Constraints,
     /// Contact points of all pairs.
     pub points: Vec<ContactPoint>,
     /// Connected bodies.
     pub bodies: Bodies,
+    /// Motions of each body that its supports leave free.
+    pub motions: Vec<Motions>,
+    /// The same at the contact points.
+    pub floating: Floating,
     /// Columns and their courses.
     pub loading: Loading,
     /// Findings that leave the answer standing.
@@ -24,76 +30,92 @@ pub struct Examined {
 
 /// Examines a validated model; the errors are all there are.
 pub fn examine(model: &Model) -> Result<Examined, Vec<Diagnostic>> {
-    let supports = Supports::new(model);
+    let constraints = Constraints::new(model);
     let (points, mut warnings) = points::find(model);
-    let bodies = Bodies::find(&model.mesh);
-    let mut errors = unattached(model, &bodies, &supports, &points);
-    errors.extend(unheld(model, &bodies, &supports));
+    let contact_nodes = points.iter().map(|p| p.node).filter(|&n| !constraints.is_fixed(n));
+    let bodies = Bodies::find(model, contact_nodes);
+    let mut motions: Vec<Motions> = (bodies.nodes.iter().zip(&bodies.elements))
+        .map(|(nodes, elements)| Motions::find(model, &constraints, nodes, elements, &bodies.local))
+        .collect();
+    let floating = Floating::new(model, &points, &bodies, &mut motions);
     warnings.extend(unreachable_loads(model, &bodies));
-    match Loading::new(model) {
-        Ok(loading) if errors.is_empty() => Ok(Examined { supports, points, bodies, loading, warnings }),
-        Ok(_) => Err(errors),
-        Err(found) => {
-            errors.extend(found);
-            Err(errors)
-        }
+    let mut loading = Loading::new(model)?;
+    constraints.extend(&mut loading.columns);
+    let (errors, idle) = unheld(model, &bodies, &motions, &floating, &loading);
+    warnings.extend(idle);
+    if errors.is_empty() {
+        Ok(Examined { constraints, points, bodies, motions, floating, loading, warnings })
+    } else {
+        Err(errors)
     }
 }
 
-/// Bodies that the supports do not hold, by name and motion.
-fn unheld(model: &Model, bodies: &Bodies, supports: &Supports) -> Vec<Diagnostic> {
-    let mut errors = Vec::new();
-    for (nodes, elements) in bodies.nodes.iter().zip(&bodies.elements) {
-        let motions = rigid::free_motions(&model.mesh, nodes, |n, d| supports.is_prescribed(n, d));
-        if !motions.is_empty() {
+/// Motions that neither supports nor contact resist, of bodies with elements: an error where a load of the deck acts along
+/// one, else a warning.
+fn unheld(
+    model: &Model,
+    bodies: &Bodies,
+    motions: &[Motions],
+    floating: &Floating,
+    loading: &Loading,
+) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
+    let (mut errors, mut warnings) = (Vec::new(), Vec::new());
+    let loads = floating.loads(&loading.columns, bodies, motions).loads;
+    for (b, of_body) in motions.iter().enumerate() {
+        let first = floating.offsets[b];
+        let (mut loaded, mut idle): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+        for m in (0..of_body.count()).filter(|&m| !floating.resisted[first + m]) {
+            let mut unit = vec![0.0; floating.count()];
+            unit[first + m] = 1.0;
+            let (sample, words) = floating.describe(motions, &unit);
+            let said = match sample {
+                Sample::Element(_) => words,
+                Sample::Node(node) => format!("{words} of node {}", model.mesh.node_labels[node.index()]),
+            };
+            if (0..loading.columns.len()).any(|j| loads.column(j)[first + m] != 0.0) {
+                loaded.push(said);
+            } else if matches!(sample, Sample::Element(_)) {
+                // A lone node that nothing loads and nothing resists just stays.
+                idle.push(said);
+            }
+        }
+        let name = body_name(model, &bodies.nodes[b], &bodies.elements[b]);
+        if !loaded.is_empty() {
             errors.push(Diagnostic::error(
                 Place::nowhere(),
                 "*BOUNDARY",
+                format!("{name} is loaded along motions that neither supports nor contact hold: {}", loaded.join(", ")),
+                "hold these motions by *BOUNDARY, *EQUATION or a spring, or let a contact pair resist them",
+            ));
+        }
+        if !idle.is_empty() {
+            warnings.push(Diagnostic::warning(
+                Place::nowhere(),
+                "*BOUNDARY",
                 format!(
-                    "body {} is not held by its own supports, which leave it {}; contact alone cannot hold a body in this version",
-                    body_name(model, elements),
-                    motions.join(", ")
+                    "nothing holds {name} against {}; no load acts along it, so it stays where it is",
+                    idle.join(", ")
                 ),
-                "prescribe enough of its directions by *BOUNDARY",
+                "hold these motions by *BOUNDARY if the body should not be free",
             ));
         }
     }
-    errors
+    (errors, warnings)
 }
 
-/// The smallest element set that covers the body, else its first element.
-fn body_name(model: &Model, elements: &[u32]) -> String {
-    let first = elements[0];
+/// A body in words: the smallest element set that covers it, else its first element or its node.
+pub fn body_name(model: &Model, nodes: &[NodeId], elements: &[u32]) -> String {
+    let Some(&first) = elements.first() else {
+        return format!("node {}", model.mesh.node_labels[nodes[0].index()]);
+    };
     let covers = |set: &&crate::model::ElementSet| {
         set.elements.len() >= elements.len()
             && elements.iter().all(|&e| set.elements.binary_search(&crate::model::ElementId(e)).is_ok())
     };
     match model.mesh.element_sets.iter().filter(covers).min_by_key(|s| s.elements.len()) {
-        Some(set) => set.name.clone(),
-        None => format!("of element {}", model.mesh.element_labels[first as usize]),
+        Some(set) => format!("body {}", set.name),
+        None => format!("the body of element {}", model.mesh.element_labels[first as usize]),
     }
-}
-
-/// Contact nodes that no element holds and no support fixes.
-fn unattached(model: &Model, bodies: &Bodies, supports: &Supports, points: &[ContactPoint]) -> Vec<Diagnostic> {
-    let mut reported = rustc_hash::FxHashSet::default();
-    let mut errors = Vec::new();
-    for point in points {
-        let n = point.node;
-        let loose = bodies.of_node[n.index()] == u32::MAX && (0..3).any(|d| !supports.is_prescribed(n, d));
-        if loose && reported.insert(n) {
-            errors.push(Diagnostic::error(
-                model.pairs[point.pair as usize].place.clone(),
-                "*CONTACT PAIR",
-                format!(
-                    "secondary node {} belongs to no element and is not fully prescribed",
-                    model.mesh.node_labels[n.index()]
-                ),
-                "attach it to an element or prescribe its directions 1 to 3",
-            ));
-        }
-    }
-    errors
 }
 
 /// Loads on nodes that belong to no element go nowhere.
@@ -106,7 +128,10 @@ fn unreachable_loads(model: &Model, bodies: &Bodies) -> Vec<Diagnostic> {
             warnings.push(Diagnostic::warning(
                 load.place.clone(),
                 "*CLOAD",
-                format!("node {} belongs to no element: its force acts on nothing", model.mesh.node_labels[n.index()]),
+                format!(
+                    "node {} belongs to no element and no equation: its force acts on nothing",
+                    model.mesh.node_labels[n.index()]
+                ),
                 "load nodes of elements",
             ));
         }

@@ -1,12 +1,12 @@
 //! Fields: displacements, reactions and stresses of the whole mesh, recovered by one solve.
 
 use crate::element::{self, Coordinates, connector};
-use crate::model::{Connector, ElementId};
+use crate::model::{Connector, ElementId, NodeId};
 use crate::simulation::{ContactStatus, Field, FieldError, NodalSolution, Simulation};
 use crate::solve::assembly::coordinates;
 use crate::solve::columns::Column;
 use crate::solve::numbering::NOT_FREE;
-use crate::solve::supports;
+use crate::solve::reactions;
 
 /// Stress (11, 22, 33, 12, 13, 23) at the integration points of an element [pressure].
 pub type ElementStress = Vec<[f64; 6]>;
@@ -37,41 +37,66 @@ impl Simulation {
                 }
             }
         }
+        self.add_motions(&mut displacement);
+        self.add_dependents(&mut displacement);
         let reaction = self.reactions(&displacement);
         NodalSolution { displacement, reaction }
     }
 
-    /// `RF = K u − f + Bᵀ F` on the prescribed directions.
+    /// Adds `R α` on the free directions.
+    fn add_motions(&self, displacement: &mut [[f64; 3]]) {
+        let prepared = &self.prepared;
+        for (b, motions) in prepared.motions.iter().enumerate().filter(|(_, m)| m.count() > 0) {
+            let amounts = &self.state.motions[prepared.floating.offsets[b]..];
+            for (local, node) in prepared.numbering.nodes[b].iter().enumerate() {
+                for direction in (0..3).filter(|&d| prepared.constraints.is_free(*node, d)) {
+                    let moved: f64 = (0..motions.count()).map(|m| amounts[m] * motions.at(m, local, direction)).sum();
+                    displacement[node.index()][direction] += moved;
+                }
+            }
+        }
+    }
+
+    /// Adds to dependent directions what the free ones give them; the prescribed ones have done so through their columns.
+    fn add_dependents(&self, displacement: &mut [[f64; 3]]) {
+        let constraints = &self.prepared.constraints;
+        for ((node, direction), terms) in constraints.dependents() {
+            let moved: f64 = (terms.iter())
+                .filter(|&&(n, d, _)| constraints.is_free(n, usize::from(d)))
+                .map(|&(n, d, factor)| factor * displacement[n.index()][usize::from(d)])
+                .sum();
+            displacement[node.index()][usize::from(direction)] += moved;
+        }
+    }
+
+    /// `RF = K u − f + Bᵀ F` on the prescribed directions, with the share of those that depend on them.
     fn reactions(&self, displacement: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let prepared = &self.prepared;
-        let supports = &prepared.supports;
         let mut reaction = vec![[0.0; 3]; displacement.len()];
-        supports::internal_forces(
+        let constraints = &prepared.constraints;
+        let mut add = |node: NodeId, direction: usize, force: f64| {
+            constraints.expand(node, direction, force, |n, d, share| {
+                if constraints.is_prescribed(n, d) {
+                    reaction[n.index()][d] += share;
+                }
+            });
+        };
+        reactions::internal_forces(
             &prepared.model,
             &prepared.elasticities,
             &prepared.support_elements,
             displacement,
-            |node, direction, force| {
-                if supports.is_prescribed(node, direction) {
-                    reaction[node.index()][direction] += force;
-                }
-            },
+            &mut add,
         );
         for (column, &a) in prepared.loading.columns.iter().zip(&self.state.coefficients) {
             if let Column::Force(entries) = column {
                 for &(node, direction, value) in entries {
-                    if supports.is_prescribed(node, direction as usize) {
-                        reaction[node.index()][direction as usize] -= a * value;
-                    }
+                    add(node, direction as usize, -a * value);
                 }
             }
         }
         for (point, &force) in prepared.points.iter().zip(&self.state.forces).filter(|(_, f)| **f != 0.0) {
-            point.row(point.normal.map(|x| -x), |node, direction, value| {
-                if supports.is_prescribed(node, direction) {
-                    reaction[node.index()][direction] += value * force;
-                }
-            });
+            point.row(point.normal.map(|x| -x), |node, direction, value| add(node, direction, value * force));
         }
         reaction
     }

@@ -10,9 +10,7 @@ impl Simulation {
         let work = &mut self.work;
         prepared.condensed.free_overclosures(&self.state.coefficients, &mut work.free);
         prepared.contact.relief(&self.state.forces, &mut work.relief);
-        for ((h, free), relief) in work.overclosures.iter_mut().zip(&work.free).zip(&work.relief) {
-            *h = free - relief;
-        }
+        prepared.contact.overclosures(&work.free, &work.relief, &self.state.motions, &mut work.overclosures);
         self.refresh();
     }
 
@@ -104,7 +102,7 @@ impl Simulation {
 
     /// Generalised value of a column under the present state; 0 where there is none.
     pub(crate) fn generalised(&self, column: Option<usize>) -> f64 {
-        column.map_or(0.0, |c| self.prepared.condensed.conjugate(c, &self.state.coefficients, &self.state.forces))
+        column.map_or(0.0, |c| self.prepared.condensed.conjugate(c, self.state.response()))
     }
 
     /// The history row of the present time.

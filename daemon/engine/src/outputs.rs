@@ -5,7 +5,7 @@ use crate::model::{Model, NodeId, SetId};
 use crate::port::{Port, PortList, Quantity, inputs_of};
 use crate::port_config::PortConfig;
 use crate::solve::columns::{Column, merge};
-use crate::solve::supports::Supports;
+use crate::solve::constraints::Constraints;
 
 /// Where the value of an output comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,7 @@ fn requested_sets(model: &Model) -> Vec<SetId> {
 
 impl Outputs {
     /// Lists the outputs of a model and appends the columns that they need.
-    pub fn new(model: &Model, supports: &Supports, columns: &mut Vec<Column>) -> Self {
+    pub fn new(model: &Model, constraints: &Constraints, columns: &mut Vec<Column>) -> Self {
         let mut out = Self {
             ports: Vec::new(),
             sources: Vec::new(),
@@ -110,7 +110,7 @@ impl Outputs {
         }
         let reaction = |nodes: &[NodeId], d: usize, columns: &mut Vec<Column>| {
             let entries: Vec<_> =
-                nodes.iter().filter(|&&n| supports.is_prescribed(n, d)).map(|&n| (n, d as u8, 1.0)).collect();
+                nodes.iter().filter(|&&n| constraints.is_prescribed(n, d)).map(|&n| (n, d as u8, 1.0)).collect();
             (!entries.is_empty()).then(|| {
                 columns.push(Column::Displacement(merge(entries)));
                 columns.len() - 1
@@ -136,7 +136,7 @@ impl Outputs {
             out.set_reactions.push(reactions);
         }
         let all: Vec<NodeId> =
-            (0..model.mesh.nodes.len() as u32).map(NodeId).filter(|&n| supports.touches(n)).collect();
+            (0..model.mesh.nodes.len() as u32).map(NodeId).filter(|&n| constraints.touches(n)).collect();
         out.all_reactions = std::array::from_fn(|d| reaction(&all, d, columns));
         for (index, (name, what)) in ENERGIES.iter().enumerate() {
             out.add(format!("energy.{name}"), Quantity::Energy, (*what).into(), Source::Energy(index));

@@ -2,22 +2,26 @@
 
 use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
-use crate::element::Elasticity;
+use crate::element::{Elasticity, connector};
 use crate::examination::{self, Examined};
 use crate::fingerprint::fingerprint;
-use crate::model::{Model, NodeId};
+use crate::model::{Connector, ElementId, Equation, Model};
 use crate::outputs::{Outputs, Source};
 use crate::port::PortList;
 use crate::port_config::PortConfig;
 use crate::procedure::loading::Loading;
 use crate::simulation::{ContactPointInfo, PathChoice, Phase, PrepareOptions};
-use crate::solve::assembly::elasticities;
-use crate::solve::body::{Body, BodyContribution, Context, NoStiffness};
+use crate::solve::assembly::{coordinates, elasticities};
+use crate::solve::body::{Body, BodyContribution, NoStiffness};
 use crate::solve::columns::Column;
 use crate::solve::condensed::Condensed;
-use crate::solve::contact::{ContactSystem, PointBehavior};
+use crate::solve::constraints::Constraints;
+use crate::solve::contact::{ContactSystem, PointBehavior, initial_springs};
+use crate::solve::context::Context;
+use crate::solve::floating::Floating;
+use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
-use crate::solve::supports::Supports;
+use crate::solve::parts::Sample;
 
 /// Everything that can be computed before the first increment. Immutable; shared by sessions and instances.
 pub struct PreparedModel {
@@ -27,7 +31,10 @@ pub struct PreparedModel {
     pub(crate) infos: Vec<ContactPointInfo>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) loading: Loading,
-    pub(crate) supports: Supports,
+    pub(crate) constraints: Constraints,
+    pub(crate) numbering: Bodies,
+    pub(crate) motions: Vec<Motions>,
+    pub(crate) floating: Floating,
     pub(crate) elasticities: Vec<Elasticity>,
     pub(crate) bodies: Vec<Body>,
     /// Elements with a prescribed direction: they carry the reactions.
@@ -41,6 +48,8 @@ pub struct PreparedModel {
     pub(crate) outputs: Outputs,
     /// Total force of unit coefficients, per real column and direction: the audit.
     pub(crate) load_totals: Vec<[f64; 3]>,
+    /// Whether no equation and no spring resists a translation of everything in a direction: then forces balance in it.
+    pub(crate) translates: [bool; 3],
     pub(crate) fingerprint: u64,
 }
 
@@ -60,27 +69,23 @@ impl PreparedModel {
             )]);
         }
         announce(Phase::Search);
-        let Examined { supports, points, bodies, loading, warnings } = examination::examine(&model)?;
+        let Examined { constraints, points, bodies, motions, floating, loading, warnings } =
+            examination::examine(&model)?;
         let mut errors = Vec::new();
         let mut columns = loading.columns.clone();
         let real_columns = columns.len();
-        let outputs = Outputs::new(&model, &supports, &mut columns);
+        let outputs = Outputs::new(&model, &constraints, &mut columns);
+        constraints.extend(&mut columns[real_columns..]);
         let elasticities = elasticities(&model);
-        let mut local = vec![u32::MAX; model.mesh.nodes.len()];
-        for nodes in &bodies.nodes {
-            for (i, n) in nodes.iter().enumerate() {
-                local[n.index()] = i as u32;
-            }
-        }
         let context = Context {
             model: &model,
             elasticities: &elasticities,
-            supports: &supports,
-            local: &local,
+            constraints: &constraints,
+            local: &bodies.local,
             points: &points,
             columns: &columns,
         };
-        let results = prepare_bodies(&context, &bodies, options.threads, announce);
+        let results = prepare_bodies(&context, &bodies, &motions, options.threads, announce);
         announce(Phase::Condense);
         let (mut prepared, mut contributions) = (Vec::new(), Vec::new());
         for result in results {
@@ -104,15 +109,15 @@ impl PreparedModel {
         if !errors.is_empty() {
             return Err(errors);
         }
-        let locate = |n: NodeId| {
-            let body = bodies.of_node[n.index()];
-            (body != u32::MAX).then(|| (body as usize, local[n.index()] as usize))
-        };
-        let (condensed, compliance) = Condensed::new(&points, &columns, &prepared, &contributions, locate);
+        let loads = floating.loads(&columns, &bodies, &motions);
+        let (condensed, compliance) = Condensed::new(&context, &bodies, &prepared, &contributions, &floating, loads);
         for body in &mut prepared {
             body.keep_columns(real_columns);
         }
         let contact = ContactSystem {
+            springs: initial_springs(&compliance, &floating.gaps),
+            gap_motions: floating.gaps.clone(),
+            resisted: floating.resisted.clone(),
             compliance,
             points: points
                 .iter()
@@ -129,7 +134,7 @@ impl PreparedModel {
             })?,
         };
         let support_elements = (0..model.mesh.elements.len() as u32)
-            .filter(|&e| model.mesh.elements.nodes(e as usize).iter().any(|&n| supports.touches(n)))
+            .filter(|&e| model.mesh.elements.nodes(e as usize).iter().any(|&n| constraints.touches(n)))
             .collect();
         let infos = points
             .iter()
@@ -142,6 +147,7 @@ impl PreparedModel {
             })
             .collect();
         let load_totals = loading.columns.iter().map(total_force).collect();
+        let translates = std::array::from_fn(|d| translates(&model, d));
         let fingerprint = fingerprint(&model);
         tracing::debug!(
             bodies = prepared.len(),
@@ -157,7 +163,10 @@ impl PreparedModel {
             infos,
             warnings,
             loading,
-            supports,
+            constraints,
+            numbering: bodies,
+            motions,
+            floating,
             elasticities,
             bodies: prepared,
             support_elements,
@@ -167,6 +176,7 @@ impl PreparedModel {
             sources,
             outputs,
             load_totals,
+            translates,
             fingerprint,
         })
     }
@@ -175,6 +185,19 @@ impl PreparedModel {
     /// holds, secondary nodes without a partner, lines that contradict each other. Cheap.
     pub fn examine(model: &Model) -> Vec<Diagnostic> {
         examination::examine(model).map_or_else(|errors| errors, |examined| examined.warnings)
+    }
+
+    /// What moves most in a combination of the free motions, and how, in words.
+    pub(crate) fn describe_motion(&self, combination: &[f64]) -> (String, String) {
+        let (sample, motion) = self.floating.describe(&self.motions, combination);
+        let name = match sample {
+            Sample::Node(node) => format!("node {}", self.model.mesh.node_labels[node.index()]),
+            Sample::Element(e) => {
+                let body = self.numbering.of_node[self.model.mesh.elements.nodes(e as usize)[0].index()] as usize;
+                examination::body_name(&self.model, &self.numbering.nodes[body], &self.numbering.elements[body])
+            }
+        };
+        (name, motion)
     }
 
     /// The model as the deck describes it.
@@ -219,21 +242,28 @@ type BodyResult = Result<(Body, BodyContribution), NoStiffness>;
 fn prepare_bodies(
     context: &Context<'_>,
     bodies: &Bodies,
+    motions: &[Motions],
     threads: usize,
     announce: &mut dyn FnMut(Phase),
 ) -> Vec<BodyResult> {
     let count = bodies.nodes.len();
     let points_of = |body: usize| -> Vec<u32> {
         let touches = |p: &ContactPoint| {
-            p.nodes().any(|n| {
-                bodies.of_node[n.index()] == body as u32 && (0..3).any(|d| !context.supports.is_prescribed(n, d))
-            })
+            let mut any = false;
+            p.row([1.0; 3], |node, direction, value| {
+                if bodies.of_node[node.index()] == body as u32 {
+                    context
+                        .constraints
+                        .expand(node, direction, value, |n, d, _| any |= context.constraints.is_free(n, d));
+                }
+            });
+            any
         };
         (0..context.points.len() as u32).filter(|&i| touches(&context.points[i as usize])).collect()
     };
     if threads <= 1 || count <= 1 {
         return (0..count)
-            .map(|b| Body::prepare(context, &bodies.nodes[b], &bodies.elements[b], points_of(b), announce))
+            .map(|b| Body::prepare(context, &bodies.nodes[b], &bodies.elements[b], &motions[b], points_of(b), announce))
             .collect();
     }
     announce(Phase::Numeric);
@@ -247,8 +277,14 @@ fn prepare_bodies(
                     if b >= count {
                         break;
                     }
-                    let result =
-                        Body::prepare(context, &bodies.nodes[b], &bodies.elements[b], points_of(b), &mut |_| {});
+                    let result = Body::prepare(
+                        context,
+                        &bodies.nodes[b],
+                        &bodies.elements[b],
+                        &motions[b],
+                        points_of(b),
+                        &mut |_| {},
+                    );
                     *results[b].lock().expect("no other thread writes this slot") = Some(result);
                 }
             });
@@ -258,6 +294,21 @@ fn prepare_bodies(
         .into_iter()
         .map(|slot| slot.into_inner().expect("a panic has ended the scope before").expect("every body was taken once"))
         .collect()
+}
+
+/// Whether equations and springs let everything move together in a direction.
+fn translates(model: &Model, direction: usize) -> bool {
+    let by_equation = |e: &Equation| {
+        let along = e.terms.iter().filter(|t| usize::from(t.1) == direction);
+        let (sum, scale) = along.fold((0.0, 0.0), |(s, a): (f64, f64), t| (s + t.2, a + t.2.abs()));
+        sum.abs() <= 1e-12 * scale
+    };
+    let by_spring = |(&element, &section): (&ElementId, &Connector)| {
+        let kind = model.mesh.elements.kind(element.index());
+        let b = connector::elongation(kind, &coordinates(&model.mesh, element.0), section);
+        (b[0][direction] + b[1][direction]).abs() <= 1e-12
+    };
+    model.equations.iter().all(by_equation) && model.mesh.connectors.iter().all(by_spring)
 }
 
 /// Total force of a column of coefficient 1.

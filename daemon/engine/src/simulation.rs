@@ -47,6 +47,10 @@ pub(crate) struct Work {
     pub free: Vec<f64>,
     pub forces: Vec<f64>,
     pub closed: Vec<bool>,
+    pub motions: Vec<f64>,
+    pub springs: Vec<f64>,
+    pub load: Vec<f64>,
+    pub load_scale: Vec<f64>,
     pub overclosures: Vec<f64>,
     pub relief: Vec<f64>,
     pub tangential: Vec<f64>,
@@ -67,7 +71,7 @@ pub(crate) struct Derived {
 impl Simulation {
     /// At the start of the first step.
     pub fn new(prepared: Arc<PreparedModel>) -> Self {
-        let n = prepared.points.len();
+        let (n, motions) = (prepared.points.len(), prepared.floating.count());
         let inputs = prepared.loading.input_columns.len();
         let mut input_of_column = vec![None; prepared.real_columns];
         for (input, &column) in prepared.loading.input_columns.iter().enumerate() {
@@ -100,6 +104,8 @@ impl Simulation {
             closed: vec![false; n],
             tangential: vec![0.0; 2 * n],
             slip: vec![0.0; 2 * n],
+            motions: vec![0.0; motions],
+            springs: prepared.contact.springs.clone(),
             conjugates: vec![0.0; prepared.real_columns],
             external_work: 0.0,
             last_change: 0.0,
@@ -109,6 +115,10 @@ impl Simulation {
             free: vec![0.0; n],
             forces: vec![0.0; n],
             closed: vec![false; n],
+            motions: vec![0.0; motions],
+            springs: vec![0.0; motions],
+            load: vec![0.0; motions],
+            load_scale: vec![0.0; motions],
             overclosures: vec![0.0; n],
             relief: vec![0.0; n],
             tangential: vec![0.0; 2 * n],

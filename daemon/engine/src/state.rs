@@ -11,10 +11,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::simulation::{RestoreError, WorkCounts};
+use crate::solve::condensed::Response;
 
 const MAGIC: [u8; 4] = *b"OVCK";
 /// Raised whenever the meaning of the payload changes.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 20;
 
 /// Everything that an increment changes.
@@ -53,6 +54,10 @@ pub struct State {
     pub tangential: Vec<f64>,
     /// Accumulated slip while closed, in the same layout [length].
     pub slip: Vec<f64>,
+    /// Displacement of each motion of bodies that only contact holds: the length that its fastest node has moved.
+    pub motions: Vec<f64>,
+    /// Springs on the motions that led to the last balance [force/length].
+    pub springs: Vec<f64>,
     /// Work-conjugate value of each real column at the end of the last increment.
     pub conjugates: Vec<f64>,
     /// ALLWK \[energy\].
@@ -62,6 +67,11 @@ pub struct State {
 }
 
 impl State {
+    /// The solution.
+    pub fn response(&self) -> Response<'_> {
+        Response { coefficients: &self.coefficients, forces: &self.forces, motions: &self.motions }
+    }
+
     /// Bytes of a checkpoint.
     pub fn encode(&self, fingerprint: u64) -> Vec<u8> {
         let payload = postcard::to_stdvec(self).expect("a plain struct of numbers always encodes");
@@ -107,6 +117,8 @@ impl State {
                 s.closed.len(),
                 s.tangential.len(),
                 s.slip.len(),
+                s.motions.len(),
+                s.springs.len(),
                 s.conjugates.len(),
             ]
         };
@@ -140,6 +152,8 @@ mod tests {
             closed: vec![true, false, true],
             tangential: vec![0.0; 6],
             slip: vec![1e-300; 6],
+            motions: vec![-0.5],
+            springs: vec![1e3],
             conjugates: vec![2.0, 3.0],
             external_work: 0.125,
             last_change: 0.2,

@@ -37,11 +37,6 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
-    /// Nodes that the constraint couples.
-    pub fn nodes(&self) -> impl Iterator<Item = NodeId> + '_ {
-        std::iter::once(self.node).chain(self.primary.iter().copied())
-    }
-
     /// Entries of the row `v · (u_secondary − Σ N u_primary)`: calls `entry(node, direction, coefficient)`.
     ///
     /// With `v = −normal` the row gives the overclosure that displacements add, with a tangent the slip.

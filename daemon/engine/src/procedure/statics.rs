@@ -3,7 +3,8 @@
 use crate::model::{Procedure, StaticControl};
 use crate::procedure::loading::value_at;
 use crate::simulation::{AdvanceOutcome, ContactStatus, IncrementReport, Simulation, StatusChange, Watch};
-use crate::solve::contact::{SolveCounts, SolveFailure};
+use crate::solve::condensed::Response;
+use crate::solve::contact::{Problem, SolveCounts, SolveFailure, Unknowns};
 
 /// Automatic increments: growth after two easy increments in a row (Abaqus: 1.5 after two).
 const GROWTH: f64 = 1.5;
@@ -139,16 +140,23 @@ impl Simulation {
         self.coefficients_at(time, interval, &mut coefficients);
         let work = &mut self.work;
         prepared.condensed.free_overclosures(&coefficients, &mut work.free);
+        prepared.condensed.motion_load(&coefficients, &mut work.load, &mut work.load_scale);
         work.forces.clone_from(&self.state.forces);
         work.closed.clone_from(&self.state.closed);
         work.relief.clone_from(&self.derived.relief);
+        work.motions.clone_from(&self.state.motions);
+        work.springs.clone_from(&self.state.springs);
         let solved = self.solver.solve(
             &prepared.contact,
-            &work.free,
-            &mut work.forces,
-            &mut work.relief,
-            &mut work.closed,
-            &mut work.overclosures,
+            Problem { free: &work.free, load: &work.load, load_scale: &work.load_scale },
+            &mut Unknowns {
+                forces: &mut work.forces,
+                relief: &mut work.relief,
+                closed: &mut work.closed,
+                overclosures: &mut work.overclosures,
+                motions: &mut work.motions,
+                springs: &mut work.springs,
+            },
         );
         let counts = match solved {
             Ok(counts) => counts,
@@ -157,7 +165,8 @@ impl Simulation {
                 return Err(Failure::Solve(failure));
             }
         };
-        prepared.condensed.tangential(&coefficients, &work.forces, &mut work.scratch, &mut work.tangential);
+        let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
+        prepared.condensed.tangential(response, &mut work.scratch, &mut work.tangential);
         let n = prepared.points.len();
         let slid: Vec<u32> = (0..n)
             .filter(|&i| {
@@ -183,8 +192,9 @@ impl Simulation {
         let (prepared, work) = (&self.prepared, &self.work);
         let strain = prepared.condensed.strain_energy(coefficients, &work.forces, &work.relief);
         let contact = prepared.contact.energy(&work.overclosures, &work.closed);
+        let response = Response { coefficients, forces: &work.forces, motions: &work.motions };
         let conjugates = (0..prepared.real_columns).all(|column| {
-            let conjugate = prepared.condensed.conjugate(column, coefficients, &work.forces);
+            let conjugate = prepared.condensed.conjugate(column, response);
             (conjugate * coefficients[column]).is_finite()
         });
         conjugates && strain.is_finite() && contact.is_finite() && self.state.external_work.is_finite()
@@ -208,8 +218,9 @@ impl Simulation {
             }
         }
         // Work by the trapezoidal rule on each force-displacement pair.
+        let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
         for column in 0..prepared.real_columns {
-            let conjugate = prepared.condensed.conjugate(column, &coefficients, &work.forces);
+            let conjugate = prepared.condensed.conjugate(column, response);
             let (a0, a1, c0) = (state.coefficients[column], coefficients[column], state.conjugates[column]);
             state.external_work += match prepared.condensed.is_displacement[column] {
                 true => 0.5 * (c0 + conjugate) * (a1 - a0),
@@ -220,6 +231,8 @@ impl Simulation {
         std::mem::swap(&mut state.forces, &mut work.forces);
         std::mem::swap(&mut state.closed, &mut work.closed);
         std::mem::swap(&mut state.tangential, &mut work.tangential);
+        std::mem::swap(&mut state.motions, &mut work.motions);
+        std::mem::swap(&mut state.springs, &mut work.springs);
         work.coefficients = std::mem::replace(&mut state.coefficients, coefficients);
         state.step_time = time;
         changes
@@ -322,7 +335,7 @@ enum Failure {
 impl Failure {
     /// A smaller increment cannot help a point that slides or an input beyond all measure.
     fn is_final(&self) -> bool {
-        matches!(self, Failure::Slid(_) | Failure::Overflow)
+        matches!(self, Failure::Slid(_) | Failure::Overflow | Failure::Solve(SolveFailure::Unheld { .. }))
     }
 
     fn describe(&self, simulation: &Simulation) -> String {
@@ -353,6 +366,12 @@ impl Failure {
                 "{after}: a secondary node slides beyond half a face of the primary surface, which small sliding does not cover: node {}",
                 list(points)
             ),
+            Failure::Solve(SolveFailure::Unheld { motions }) => {
+                let (name, motion) = prepared.describe_motion(motions);
+                format!(
+                    "{after}: {name} is loaded along a motion that neither supports nor contact hold: {motion}; hold it by *BOUNDARY or a spring, or let contact resist it"
+                )
+            }
             Failure::Solve(SolveFailure::NotConverged { points }) => {
                 format!("{after}: no equilibrium found; points that kept changing: node {}", list(points))
             }

@@ -1,6 +1,7 @@
 //! Stiffness matrix of one body on its free degrees of freedom, lower triangle by columns, in elimination order.
 
-use super::numbering::NodeGraph;
+use super::context::Context;
+use super::numbering::{NOT_FREE, NodeGraph, Reach};
 use crate::element::{self, Coordinates, Elasticity, Stiffness, connector};
 use crate::model::{ElementId, Mesh, Model};
 
@@ -18,6 +19,13 @@ impl LowerMatrix {
     /// Order of the matrix.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
+    }
+
+    /// Adds to an entry of the lower triangle that the pattern has.
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let range = self.starts[column]..self.starts[column + 1];
+        let at = self.rows[range.clone()].binary_search(&row).expect("nodes that an element couples are neighbours");
+        self.values[range.start + at] += value;
     }
 
     /// Diagonal entries: the first of each column.
@@ -52,6 +60,8 @@ pub fn element_stiffness(model: &Model, elasticities: &[Elasticity], element: u3
 
 /// Numbering that assembly needs of a body.
 pub struct Layout<'a> {
+    /// Nodes that each element couples.
+    pub reach: &'a Reach<'a>,
     /// Neighbours by body-local node.
     pub graph: &'a NodeGraph,
     /// Body-local nodes in elimination order.
@@ -63,14 +73,9 @@ pub struct Layout<'a> {
 }
 
 /// Assembles the stiffness of a body.
-pub fn assemble(
-    model: &Model,
-    elasticities: &[Elasticity],
-    elements: &[u32],
-    local: &[u32],
-    layout: &Layout<'_>,
-) -> LowerMatrix {
-    let free = |node: u32| layout.unknowns[node as usize].into_iter().filter(|&u| u != super::numbering::NOT_FREE);
+pub fn assemble(context: &Context<'_>, elements: &[u32], layout: &Layout<'_>) -> LowerMatrix {
+    let (model, local) = (context.model, context.local);
+    let free = |node: u32| layout.unknowns[node as usize].into_iter().filter(|&u| u != NOT_FREE);
     let mut position = vec![0u32; layout.order.len()];
     for (p, &node) in layout.order.iter().enumerate() {
         position[node as usize] = p as u32;
@@ -104,8 +109,13 @@ pub fn assemble(
     let mut values = vec![0.0; rows.len()];
     let mut k = Stiffness::default();
     let mut nodes = Vec::new();
+    let mut constrained = Vec::new();
     for &e in elements {
-        element_stiffness(model, elasticities, e, &mut k);
+        element_stiffness(model, context.elasticities, e, &mut k);
+        if layout.reach.is_extended(e) {
+            constrained.push(e);
+            continue;
+        }
         nodes.clear();
         nodes.extend(model.mesh.elements.nodes(e as usize).iter().map(|n| local[n.index()]));
         for a in 0..nodes.len() {
@@ -117,7 +127,7 @@ pub fn assemble(
                 let (p, q) = (pa.min(pb) as usize, pa.max(pb));
                 let (columns, row_dofs) =
                     (layout.unknowns[nodes[first] as usize], layout.unknowns[nodes[second] as usize]);
-                let own = columns.iter().filter(|&&u| u != super::numbering::NOT_FREE).count();
+                let own = columns.iter().filter(|&&u| u != NOT_FREE).count();
                 let block_row = if q as usize == p {
                     None
                 } else {
@@ -128,13 +138,13 @@ pub fn assemble(
                 let mut column = own_starts[p];
                 let mut column_rank = 0;
                 for (i, &c) in columns.iter().enumerate() {
-                    if c == super::numbering::NOT_FREE {
+                    if c == NOT_FREE {
                         continue;
                     }
                     let base = starts[column];
                     let mut rank = 0;
                     for (j, &r) in row_dofs.iter().enumerate() {
-                        if r == super::numbering::NOT_FREE {
+                        if r == NOT_FREE {
                             continue;
                         }
                         let entry = if transposed { block[3 * j + i] } else { block[3 * i + j] };
@@ -152,5 +162,43 @@ pub fn assemble(
         }
     }
     debug_assert_eq!(starts.len() - 1, layout.count);
-    LowerMatrix { starts, rows, values }
+    let mut matrix = LowerMatrix { starts, rows, values };
+    for e in constrained {
+        add_constrained(context, layout, e, &mut matrix);
+    }
+    matrix
+}
+
+/// Adds `Tᵀ K T` of an element with dependent nodes.
+fn add_constrained(context: &Context<'_>, layout: &Layout<'_>, element: u32, matrix: &mut LowerMatrix) {
+    let mut k = Stiffness::default();
+    element_stiffness(context.model, context.elasticities, element, &mut k);
+    let nodes = context.model.mesh.elements.nodes(element as usize);
+    // Unknowns of each direction of the element, with factors.
+    let mut shares: Vec<Vec<(usize, f64)>> = vec![Vec::new(); 3 * nodes.len()];
+    for (a, &node) in nodes.iter().enumerate() {
+        for d in 0..3 {
+            context.constraints.expand(node, d, 1.0, |n, direction, factor| {
+                let unknown = layout.unknowns[context.local[n.index()] as usize][direction];
+                if unknown != NOT_FREE {
+                    shares[3 * a + d].push((unknown as usize, factor));
+                }
+            });
+        }
+    }
+    for a in 0..nodes.len() {
+        for b in 0..nodes.len() {
+            let block = k.block(a.min(b), a.max(b));
+            for i in 0..3 {
+                for j in 0..3 {
+                    let entry = if a <= b { block[3 * i + j] } else { block[3 * j + i] };
+                    for &(row, p) in &shares[3 * a + i] {
+                        for &(column, q) in shares[3 * b + j].iter().filter(|&&(column, _)| column <= row) {
+                            matrix.add(row, column, p * q * entry);
+                        }
+                    }
+                }
+            }
+        }
+    }
 }

@@ -2,13 +2,12 @@
 
 use super::assembly::{self, Layout};
 use super::columns::Column;
+use super::context::Context;
 use super::linear::{Dense, Factor, Symbolic};
-use super::numbering::{NOT_FREE, NodeGraph};
-use super::ordering;
-use super::supports::Supports;
-use crate::contact::points::ContactPoint;
-use crate::element::Elasticity;
-use crate::model::{Model, NodeId};
+use super::motions::Motions;
+use super::numbering::{NOT_FREE, NodeGraph, Reach};
+use super::{ordering, reactions};
+use crate::model::NodeId;
 use crate::simulation::Phase;
 
 /// A body, factored. Immutable.
@@ -52,33 +51,25 @@ pub struct NoStiffness {
     pub direction: usize,
 }
 
-/// What is known of the model when bodies are prepared.
-pub struct Context<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// Elastic constants by material.
-    pub elasticities: &'a [Elasticity],
-    /// Prescribed directions.
-    pub supports: &'a Supports,
-    /// Body-local number of each node.
-    pub local: &'a [u32],
-    /// All contact points.
-    pub points: &'a [ContactPoint],
-    /// Load and displacement columns.
-    pub columns: &'a [Column],
-}
-
 impl Body {
     /// Assembles, orders, factors and condenses a body.
     pub fn prepare(
         context: &Context<'_>,
         nodes: &[NodeId],
         elements: &[u32],
+        motions: &Motions,
         body_points: Vec<u32>,
         announce: &mut dyn FnMut(Phase),
     ) -> Result<(Self, BodyContribution), NoStiffness> {
         announce(Phase::Order);
-        let graph = NodeGraph::new(&context.model.mesh, nodes, elements, context.local);
+        let reach = Reach::new(&context.model.mesh, elements, context.constraints);
+        let graph = NodeGraph::new(&reach, nodes, elements, context.local);
+        let is_free = |node: usize, direction: usize| context.constraints.is_free(nodes[node], direction);
+        // Holding the anchors makes the stiffness regular; on loads in balance they carry nothing.
+        let mut held = vec![0u8; nodes.len()];
+        for (node, direction) in motions.anchors(is_free) {
+            held[node] |= 1 << direction;
+        }
         let retained = retained_nodes(context, nodes, &body_points);
         let order = ordering::order(&graph, &retained);
         let mut unknowns = vec![[NOT_FREE; 3]; nodes.len()];
@@ -88,7 +79,7 @@ impl Body {
                 interior = count;
             }
             for direction in 0..3 {
-                if !context.supports.is_prescribed(nodes[node as usize], direction) {
+                if is_free(node as usize, direction) && held[node as usize] & (1 << direction) == 0 {
                     unknowns[node as usize][direction] = count as u32;
                     count += 1;
                 }
@@ -98,8 +89,8 @@ impl Body {
             interior = count;
         }
         announce(Phase::Assemble);
-        let layout = Layout { graph: &graph, order: &order, unknowns: &unknowns, count };
-        let matrix = assembly::assemble(context.model, context.elasticities, elements, context.local, &layout);
+        let layout = Layout { reach: &reach, graph: &graph, order: &order, unknowns: &unknowns, count };
+        let matrix = assembly::assemble(context, elements, &layout);
         let factor = if count == 0 {
             None
         } else {
@@ -134,13 +125,26 @@ impl Body {
         Ok((body, contribution))
     }
 
-    fn unknown(&self, context: &Context<'_>, node: NodeId, direction: usize) -> Option<usize> {
+    /// Unknowns of this body that a direction of a node belongs to, with the value's share of each.
+    fn spread_over(
+        &self,
+        context: &Context<'_>,
+        node: NodeId,
+        direction: usize,
+        value: f64,
+        mut add: impl FnMut(usize, f64),
+    ) {
         // A node of another body has a body-local number too: compare the node itself.
-        let local = context.local[node.index()] as usize;
-        (self.nodes.get(local) == Some(&node))
-            .then(|| self.unknowns[local][direction])
-            .filter(|&u| u != NOT_FREE)
-            .map(|u| u as usize)
+        let local = |n: NodeId| context.local[n.index()] as usize;
+        if self.nodes.get(local(node)) != Some(&node) {
+            return;
+        }
+        context.constraints.expand(node, direction, value, |n, d, v| {
+            let unknown = self.unknowns[local(n)][d];
+            if unknown != NOT_FREE {
+                add(unknown as usize, v);
+            }
+        });
     }
 
     fn condense(&mut self, context: &Context<'_>, elements: &[u32]) -> BodyContribution {
@@ -151,9 +155,9 @@ impl Body {
         for (column, &p) in self.points.iter().enumerate() {
             let point = &context.points[p as usize];
             point.row(point.normal.map(|x| -x), |node, direction, value| {
-                if let Some(u) = self.unknown(context, node, direction) {
-                    spread.values[column * retained + u - self.interior] += value;
-                }
+                self.spread_over(context, node, direction, value, |u, v| {
+                    spread.values[column * retained + u - self.interior] += v;
+                });
             });
         }
         spread.solve_lower(&lower);
@@ -168,7 +172,7 @@ impl Body {
             for (t, &tangent) in point.tangents.iter().enumerate() {
                 row.clear();
                 point.row(tangent, |node, direction, value| {
-                    row.extend(self.unknown(context, node, direction).map(|u| (u - self.interior, value)));
+                    self.spread_over(context, node, direction, value, |u, v| row.push((u - self.interior, v)));
                 });
                 for j in 0..n {
                     let column = response.column(j);
@@ -188,16 +192,14 @@ impl Body {
         for (j, column) in context.columns.iter().enumerate() {
             if let Column::Force(entries) = column {
                 for &(node, direction, value) in entries {
-                    if let Some(u) = self.unknown(context, node, direction as usize) {
-                        rhs.values[j * self.count + u] += value;
-                    }
+                    self.spread_over(context, node, direction as usize, value, |u, v| {
+                        rhs.values[j * self.count + u] += v;
+                    });
                 }
             }
         }
-        let energy = context.supports.couplings(context, elements, |node, direction, j, force| {
-            if let Some(u) = self.unknown(context, node, direction) {
-                rhs.values[j * self.count + u] -= force;
-            }
+        let energy = reactions::couplings(context, elements, |node, direction, j, force| {
+            self.spread_over(context, node, direction, force, |u, v| rhs.values[j * self.count + u] -= v);
         });
         let mut solution = rhs.clone();
         if let Some(factor) = &self.factor {
@@ -250,16 +252,19 @@ impl Body {
     }
 }
 
-/// Body-local nodes with an unknown that a contact point touches, ascending.
+/// Body-local nodes that the rows of contact points reach, ascending.
 fn retained_nodes(context: &Context<'_>, nodes: &[NodeId], body_points: &[u32]) -> Vec<u32> {
     let mut touched = vec![false; nodes.len()];
     for &p in body_points {
-        for node in context.points[p as usize].nodes() {
-            let local = context.local[node.index()] as usize;
-            if nodes.get(local) == Some(&node) && (0..3).any(|d| !context.supports.is_prescribed(node, d)) {
-                touched[local] = true;
+        context.points[p as usize].row([1.0; 3], |node, direction, value| {
+            if nodes.get(context.local[node.index()] as usize) == Some(&node) {
+                context.constraints.expand(node, direction, value, |n, d, _| {
+                    if context.constraints.is_free(n, d) {
+                        touched[context.local[n.index()] as usize] = true;
+                    }
+                });
             }
-        }
+        });
     }
     (0..nodes.len() as u32).filter(|&i| touched[i as usize]).collect()
 }

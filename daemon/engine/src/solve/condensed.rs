@@ -3,24 +3,36 @@
 //! With coefficients `a` of the columns and contact forces `F`
 //!
 //! ```text
-//! u = Σ a_j u_j − K⁻¹ Bᵀ F
-//! h = h_0 + H a − W F                     overclosures
-//! g = H_t a − W_t F                       relative tangential displacements
-//! d_i = f_iᵀ u = Σ G_ij a_j − H_iᵀ F      generalised displacement of a force column
-//! R_i = û_iᵀ RF = Σ G_ij a_j + H_iᵀ F     generalised reaction of a displacement column
+//! u = Σ a_j u_j − K⁻¹ Bᵀ F + R α
+//! h = h_0 + H a − W F + D α                          overclosures
+//! g = H_t a − W_t F + D_t α                          relative tangential displacements
+//! d_i = f_iᵀ u = Σ G_ij a_j − H_iᵀ F + (Rᵀ f_i)ᵀ α   generalised displacement of a force column
+//! R_i = û_iᵀ RF = Σ G_ij a_j + H_iᵀ F                generalised reaction of a displacement column
 //! ```
 //!
-//! The last two need no solves of their own: by reciprocity the response of an output to contact forces is the overclosure
+//! `α` are the motions of bodies that only contact holds (`floating.rs`). The last two need no solves of their own: by reciprocity the response of an output to contact forces is the overclosure
 //! that the output's own column causes.
 
 use rustc_hash::FxHashMap;
 
 use super::body::{Body, BodyContribution};
 use super::columns::Column;
+use super::context::Context;
+use super::floating::{Floating, MotionLoads};
 use super::linear::Dense;
-use super::numbering::NOT_FREE;
-use crate::contact::points::ContactPoint;
+use super::numbering::{Bodies, NOT_FREE};
 use crate::model::NodeId;
+
+/// A solution in the condensed unknowns.
+#[derive(Clone, Copy)]
+pub struct Response<'a> {
+    /// Coefficients `a` of the leading columns.
+    pub coefficients: &'a [f64],
+    /// Contact forces `F`.
+    pub forces: &'a [f64],
+    /// Motions `α`.
+    pub motions: &'a [f64],
+}
 
 /// Dense operators on contact points and columns.
 pub struct Condensed {
@@ -34,6 +46,12 @@ pub struct Condensed {
     pub slip_columns: Dense,
     /// `G`.
     pub coupling: Dense,
+    /// `D_t`.
+    pub slip_motions: Dense,
+    /// `Rᵀ f`: motions x columns.
+    pub motion_loads: Dense,
+    /// Scale of the rounding in `Rᵀ f`.
+    pub motion_load_scales: Dense,
     /// Which columns are displacements.
     pub is_displacement: Vec<bool>,
     /// `û_iᵀ K û_i` of displacement columns before the interior gives way: the scale of the rounding in `G`.
@@ -42,15 +60,15 @@ pub struct Condensed {
 
 impl Condensed {
     /// Puts the contributions of the bodies together; the second result is `W` [length/force].
-    ///
-    /// `locate` gives the body of a node and its number there.
     pub fn new(
-        points: &[ContactPoint],
-        columns: &[Column],
+        context: &Context<'_>,
+        numbering: &Bodies,
         bodies: &[Body],
         contributions: &[BodyContribution],
-        locate: impl Fn(NodeId) -> Option<(usize, usize)>,
+        floating: &Floating,
+        motion_loads: MotionLoads,
     ) -> (Self, Dense) {
+        let (points, columns) = (context.points, context.columns);
         let (n, m) = (points.len(), columns.len());
         let mut compliance = Dense::zeros(n, n);
         let mut slip_compliance = Dense::zeros(2 * n, n);
@@ -74,13 +92,24 @@ impl Condensed {
                 *sum += value;
             }
         }
-        let (gap_columns, slip_columns) = responses(points, columns, bodies, locate);
+        let (gap_columns, slip_columns) = responses(context, numbering, bodies);
         let is_displacement: Vec<bool> = columns.iter().map(Column::is_displacement).collect();
         let coupling = couplings(columns, &products, &prescribed_energy);
         let initial = points.iter().map(|p| -p.clearance).collect();
         let unrelieved = (0..m).map(|i| prescribed_energy.column(i)[i]).collect();
         (
-            Self { slip_compliance, initial, gap_columns, slip_columns, coupling, is_displacement, unrelieved },
+            Self {
+                slip_compliance,
+                initial,
+                gap_columns,
+                slip_columns,
+                coupling,
+                slip_motions: floating.slips.clone(),
+                motion_loads: motion_loads.loads,
+                motion_load_scales: motion_loads.scales,
+                is_displacement,
+                unrelieved,
+            },
             compliance,
         )
     }
@@ -91,27 +120,45 @@ impl Condensed {
         self.gap_columns.multiply_add(coefficients, out);
     }
 
+    /// `Rᵀ f` into `load` and the scale of its rounding into `scale`, one value per motion.
+    pub fn motion_load(&self, coefficients: &[f64], load: &mut [f64], scale: &mut [f64]) {
+        load.fill(0.0);
+        scale.fill(0.0);
+        self.motion_loads.multiply_add(coefficients, load);
+        for (j, a) in coefficients.iter().enumerate() {
+            for (sum, s) in scale.iter_mut().zip(self.motion_load_scales.column(j)) {
+                *sum += (a * s).abs();
+            }
+        }
+    }
+
     /// Relative tangential displacements.
-    pub fn tangential(&self, coefficients: &[f64], forces: &[f64], scratch: &mut [f64], out: &mut [f64]) {
+    pub fn tangential(&self, response: Response<'_>, scratch: &mut [f64], out: &mut [f64]) {
         scratch.fill(0.0);
-        self.slip_compliance.multiply_add(forces, scratch);
+        self.slip_compliance.multiply_add(response.forces, scratch);
         out.fill(0.0);
-        self.slip_columns.multiply_add(coefficients, out);
+        self.slip_columns.multiply_add(response.coefficients, out);
+        self.slip_motions.multiply_add(response.motions, out);
         for (o, s) in out.iter_mut().zip(&*scratch) {
             *o -= s;
         }
     }
 
     /// Generalised displacement of a force column, or generalised reaction of a displacement column.
-    pub fn conjugate(&self, column: usize, coefficients: &[f64], forces: &[f64]) -> f64 {
+    pub fn conjugate(&self, column: usize, response: Response<'_>) -> f64 {
         let m = self.coupling.rows;
         let by_columns: f64 =
-            coefficients.iter().enumerate().map(|(j, a)| self.coupling.values[j * m + column] * a).sum();
-        let by_contact: f64 = self.gap_columns.column(column).iter().zip(forces).map(|(h, f)| h * f).sum();
-        if self.is_displacement[column] { by_columns + by_contact } else { by_columns - by_contact }
+            response.coefficients.iter().enumerate().map(|(j, a)| self.coupling.values[j * m + column] * a).sum();
+        let by_contact: f64 = self.gap_columns.column(column).iter().zip(response.forces).map(|(h, f)| h * f).sum();
+        if self.is_displacement[column] {
+            return by_columns + by_contact;
+        }
+        let by_motions: f64 = self.motion_loads.column(column).iter().zip(response.motions).map(|(r, a)| r * a).sum();
+        by_columns - by_contact + by_motions
     }
 
-    /// Strain energy of the bodies: `½ Σ_dd a G a + ½ Σ_ff a G a + ½ Fᵀ W F − Fᵀ Σ_f H a`; `relief` is `W F`.
+    /// Strain energy of the bodies: `½ Σ_dd a G a + ½ Σ_ff a G a + ½ Fᵀ W F − Fᵀ Σ_f H a`; `relief` is `W F`. Motions store
+    /// none.
     pub fn strain_energy(&self, coefficients: &[f64], forces: &[f64], relief: &[f64]) -> f64 {
         let m = self.coupling.rows;
         let mut energy = 0.0;
@@ -169,13 +216,10 @@ fn overlap(a: &Column, b: &Column) -> f64 {
 }
 
 /// `H` and `H_t`: what unit coefficients do at the contact points.
-fn responses(
-    points: &[ContactPoint],
-    columns: &[Column],
-    bodies: &[Body],
-    locate: impl Fn(NodeId) -> Option<(usize, usize)>,
-) -> (Dense, Dense) {
+fn responses(context: &Context<'_>, numbering: &Bodies, bodies: &[Body]) -> (Dense, Dense) {
+    let (points, columns) = (context.points, context.columns);
     let (n, m) = (points.len(), columns.len());
+    // Dependent directions stand here with what prescribed ones do to them.
     let mut prescribed: FxHashMap<(NodeId, u8), Vec<(usize, f64)>> = FxHashMap::default();
     for (j, column) in columns.iter().enumerate() {
         if let Column::Displacement(entries) = column {
@@ -192,18 +236,22 @@ fn responses(
         for (kind, &v) in directions.iter().enumerate() {
             row.fill(0.0);
             point.row(v, |node, direction, value| {
-                if let Some((body, local)) = locate(node) {
-                    let unknown = bodies[body].unknowns[local][direction];
-                    if unknown != NOT_FREE {
-                        for (r, j) in row.iter_mut().zip(0..m) {
-                            *r += value * bodies[body].columns.column(j)[unknown as usize];
-                        }
-                        return;
-                    }
-                }
                 for &(j, pattern) in prescribed.get(&(node, direction as u8)).map_or(&[][..], Vec::as_slice) {
                     row[j] += value * pattern;
                 }
+                context.constraints.expand(node, direction, value, |n, d, share| {
+                    let body = numbering.of_node[n.index()];
+                    if body == u32::MAX {
+                        return;
+                    }
+                    let body = &bodies[body as usize];
+                    let unknown = body.unknowns[numbering.local[n.index()] as usize][d];
+                    if unknown != NOT_FREE {
+                        for (r, j) in row.iter_mut().zip(0..m) {
+                            *r += share * body.columns.column(j)[unknown as usize];
+                        }
+                    }
+                });
             });
             for (j, value) in row.iter().enumerate() {
                 match kind {

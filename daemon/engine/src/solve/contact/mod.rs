@@ -1,78 +1,69 @@
-//! The contact solve in gap space: which points carry force, and how much.
+//! The contact solve in gap space: which points carry force, how much, and where bodies settle that only contact holds.
 //!
 //! ```text
-//! h = h_free − W F,      F_i = A_i p(h_i)  (softened),      h_i ≤ 0, F_i ≥ 0, F_i h_i = 0  (hard)
+//! h = h_free − W F + D α,      F_i = A_i p(h_i)  (softened),      h_i ≤ 0, F_i ≥ 0, F_i h_i = 0  (hard)
+//! Dᵀ F = Rᵀ f
 //! ```
 //!
-//! `W = B K⁻¹ Bᵀ` is symmetric and positive semi-definite and every law is monotone, so the solution minimises the
-//! convex potential `Π(Λ) = ½ Λᵀ W Λ + Σ A U(h_free − W Λ)` under `h ≤ 0` at the hard points. Each iteration
-//! minimises its quadratic model exactly (the hard points by block principal pivoting, which cannot cycle) and goes
-//! along the step as far as Π falls. That converges from any start; "not converged" is left for prescribed
-//! motions that no contact force can resist.
-//!
-//! Sources: damped Newton on a convex function (Boyd and Vandenberghe 9.5); block principal pivoting with the
-//! single-pivot safeguard (Portugal, Júdice, Vicente 1994).
+//! `held.rs` solves it with the motions `α` held, `balance.rs` finds them.
 
-use super::linear::{self, Dense, DenseScratch};
-use crate::law::{NormalBehavior, PressureLaw};
+mod balance;
+mod held;
+mod system;
+#[cfg(test)]
+mod tests;
 
-/// Iterations of the damped Newton method before an attempt is given up. Piecewise linear laws end in a handful,
-/// the exponential law in about ten; an order of magnitude above that nothing is gained.
-const ITERATIONS_MAX: u32 = 200;
-/// Full exchanges that may fail to reduce the number of violating points before single exchanges take over.
-const FULL_EXCHANGES_WITHOUT_GAIN: u32 = 3;
-/// Out-of-balance contact force, relative to the largest contact force, at which the laws are satisfied.
-const FORCE_TOLERANCE: f64 = 1e-12;
-/// Overclosure of a hard point, relative to the largest overclosure without contact, that is rounding.
-const OVERCLOSURE_TOLERANCE: f64 = 1e-13;
-/// Remaining overclosure, on the same scale, above which a hard constraint that depends on others contradicts them.
-const CONFLICT_TOLERANCE: f64 = 1e-9;
-/// Contact stiffness, relative to that of the bodies at the point, below which a point carries no force worth having.
-const NEGLIGIBLE_STIFFNESS: f64 = 1e-30;
-/// Line search: accepted growth of the slope of Π beyond its minimum, relative to the slope at the start.
-const SLOPE_ACCEPTED: f64 = 0.5;
+pub use held::ContactSolver;
+pub use system::{ContactSystem, PointBehavior, initial_springs};
 
-/// Area and behaviour of a contact point.
-#[derive(Clone, Debug)]
-pub struct PointBehavior {
-    /// Tributary area [length²].
-    pub area: f64,
-    /// Index into the behaviours.
-    pub behavior: usize,
+use super::linear::Dense;
+use crate::law::NormalBehavior;
+
+/// Springs on motions, relative to the stiffness with which closed contact holds them: soft enough to lead to the balance in a few
+/// steps, stiff enough to keep thirteen digits.
+const SPRING_RATIO: f64 = 1e-3;
+
+/// What the contact points are pushed by in an increment.
+#[derive(Clone, Copy)]
+pub struct Problem<'a> {
+    /// Overclosures without contact forces and motions.
+    pub free: &'a [f64],
+    /// `Rᵀ f` per motion.
+    pub load: &'a [f64],
+    /// Scale of its rounding.
+    pub load_scale: &'a [f64],
 }
 
-/// The contact points as the solver sees them: immutable.
-pub struct ContactSystem {
-    /// `W = B K⁻¹ Bᵀ` [length/force].
-    pub compliance: Dense,
-    /// Points.
-    pub points: Vec<PointBehavior>,
-    /// Behaviours that the points refer to.
-    pub behaviors: Vec<NormalBehavior>,
+/// Start and solution of an increment.
+pub struct Unknowns<'a> {
+    /// `F`.
+    pub forces: &'a mut [f64],
+    /// `W F`.
+    pub relief: &'a mut [f64],
+    /// Status of each point.
+    pub closed: &'a mut [bool],
+    /// `h`.
+    pub overclosures: &'a mut [f64],
+    /// `α`.
+    pub motions: &'a mut [f64],
+    /// Springs on the motions that led to the balance last time [force/length].
+    pub springs: &'a mut [f64],
 }
 
-impl ContactSystem {
-    /// `W F`: by how much contact forces take the overclosures back. The one place where it is computed, so that a
-    /// restored state has the same bits.
-    pub fn relief(&self, forces: &[f64], out: &mut [f64]) {
+/// The points with a compliance that holds every motion.
+struct View<'a> {
+    compliance: &'a Dense,
+    points: &'a [PointBehavior],
+    behaviors: &'a [NormalBehavior],
+}
+
+impl View<'_> {
+    fn relief(&self, forces: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.compliance.multiply_add(forces, out);
     }
 
-    /// Energy stored in softened contact at the closed points: before the first increment nothing is closed yet, however
-    /// far the meshes overlap.
-    pub fn energy(&self, overclosures: &[f64], closed: &[bool]) -> f64 {
-        let mut sum = 0.0;
-        for (i, point) in self.points.iter().enumerate().filter(|&(i, _)| closed[i]) {
-            if let NormalBehavior::Softened(law) = &self.behaviors[point.behavior] {
-                sum += point.area * law.evaluate(overclosures[i]).energy;
-            }
-        }
-        sum
-    }
-
-    /// Whether a point is under hard contact.
-    pub fn is_hard(&self, point: usize) -> bool {
+    fn is_hard(&self, point: usize) -> bool {
         matches!(self.behaviors[self.points[point].behavior], NormalBehavior::Hard)
     }
 }
@@ -94,361 +85,14 @@ pub enum SolveFailure {
         /// Points and their overclosures.
         points: Vec<(u32, f64)>,
     },
+    /// Loads along a motion of bodies that no contact holds.
+    Unheld {
+        /// The motion.
+        motions: Vec<f64>,
+    },
     /// The iteration limit was reached.
     NotConverged {
         /// Points that were still changing or out of balance.
         points: Vec<u32>,
     },
 }
-
-/// Work space, allocated once; also holds the last factor, keyed by what went into it.
-#[derive(Default)]
-pub struct ContactSolver {
-    trial: Vec<f64>,
-    relief_trial: Vec<f64>,
-    active: Vec<u32>,
-    /// Per point: compliance of the linearised law (0 for hard points).
-    compliance: Vec<f64>,
-    /// Per point: overclosure at which the linearised law has no pressure (0 for hard points).
-    onset: Vec<f64>,
-    is_active: Vec<bool>,
-    was_closed: Vec<bool>,
-    violating: Vec<u32>,
-    right: Vec<f64>,
-    factor: Vec<f64>,
-    factor_points: Vec<u32>,
-    factor_compliance: Vec<f64>,
-    factor_rows: Vec<u32>,
-    scratch: DenseScratch,
-}
-
-impl ContactSolver {
-    /// Work space for a system.
-    pub fn new(system: &ContactSystem) -> Self {
-        let n = system.points.len();
-        let mut solver = Self::default();
-        for v in [&mut solver.trial, &mut solver.relief_trial, &mut solver.compliance, &mut solver.onset] {
-            v.resize(n, 0.0);
-        }
-        for v in [&mut solver.active, &mut solver.violating, &mut solver.factor_points, &mut solver.factor_rows] {
-            v.reserve(n);
-        }
-        solver.right.reserve(n);
-        solver.factor_compliance.reserve(n);
-        solver.is_active.resize(n, false);
-        solver.was_closed.resize(n, false);
-        solver
-    }
-
-    /// Solves for the contact forces. `forces`, their `relief` `W F` and `closed` hold the start and receive the solution;
-    /// `overclosures` receives `free − relief`. On failure they are left as they are at that moment.
-    pub fn solve(
-        &mut self,
-        system: &ContactSystem,
-        free: &[f64],
-        forces: &mut [f64],
-        relief: &mut [f64],
-        closed: &mut [bool],
-        overclosures: &mut [f64],
-    ) -> Result<SolveCounts, SolveFailure> {
-        let n = system.points.len();
-        let mut counts = SolveCounts::default();
-        let free_scale = free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
-        let has_hard = (0..n).any(|i| system.is_hard(i));
-        for i in 0..n {
-            self.is_active[i] = system.is_hard(i) && closed[i];
-        }
-        // A start that violates a hard constraint has no potential to compare with: its first step is taken whole.
-        let mut comparable = !has_hard;
-        for i in 0..n {
-            overclosures[i] = free[i] - relief[i];
-        }
-        for _ in 0..ITERATIONS_MAX {
-            self.was_closed.copy_from_slice(closed);
-            self.linearise(system, overclosures);
-            counts.severe_discontinuity_iterations += self.minimise_model(system, free, free_scale)?;
-            // Near the solution the slope of Π is rounding and says nothing: a step that ends balanced is taken whole.
-            let whole = !comparable || self.trial_is_balanced(system, free);
-            let fraction = if whole { 1.0 } else { self.line_search(system, forces, relief, overclosures) };
-            comparable = true;
-            for i in 0..n {
-                if fraction == 1.0 {
-                    forces[i] = self.trial[i];
-                    relief[i] = self.relief_trial[i];
-                } else {
-                    forces[i] += fraction * (self.trial[i] - forces[i]);
-                    relief[i] += fraction * (self.relief_trial[i] - relief[i]);
-                }
-                overclosures[i] = free[i] - relief[i];
-            }
-            for i in 0..n {
-                closed[i] = if system.is_hard(i) { self.is_active[i] } else { forces[i] > 0.0 };
-            }
-            if *closed != *self.was_closed {
-                counts.severe_discontinuity_iterations += 1;
-            } else {
-                counts.equilibrium_iterations += 1;
-            }
-            if fraction == 1.0 && self.is_balanced(system, free, forces, overclosures) {
-                // The last step was taken whole: `relief` is `W F` as `relief` of the system computes it.
-                return Ok(counts);
-            }
-        }
-        let scale = self.force_scale();
-        let unsettled = (0..n).filter(|&i| {
-            closed[i] != self.was_closed[i] || !self.point_is_balanced(system, i, free, forces, overclosures[i], scale)
-        });
-        Err(SolveFailure::NotConverged { points: unsettled.map(|i| i as u32).collect() })
-    }
-
-    /// Linearises the softened laws at the present overclosures: `F = (h − onset) / compliance` where the slope is
-    /// positive, no force elsewhere.
-    fn linearise(&mut self, system: &ContactSystem, overclosures: &[f64]) {
-        for (i, point) in system.points.iter().enumerate() {
-            if let NormalBehavior::Softened(law) = &system.behaviors[point.behavior] {
-                let at = law.evaluate(overclosures[i]);
-                // A point so soft against the bodies that its force cannot matter is left out: its compliance
-                // would only bring overflow into the factor.
-                let softness = at.stiffness * point.area * system.compliance.column(i)[i];
-                self.is_active[i] =
-                    softness > NEGLIGIBLE_STIFFNESS || (system.compliance.column(i)[i] == 0.0 && at.stiffness > 0.0);
-                if self.is_active[i] {
-                    self.compliance[i] = 1.0 / (point.area * at.stiffness);
-                    self.onset[i] = overclosures[i] - at.pressure / at.stiffness;
-                }
-            }
-        }
-    }
-
-    /// Minimises the quadratic model into `trial` and `relief_trial`; returns the exchanges of hard points.
-    fn minimise_model(&mut self, system: &ContactSystem, free: &[f64], free_scale: f64) -> Result<u32, SolveFailure> {
-        let n = system.points.len();
-        let (mut best, mut patience, mut exchanges) = (usize::MAX, FULL_EXCHANGES_WITHOUT_GAIN, 0u32);
-        // Single exchanges visit a set at most once; the bound only guards against rounding.
-        let exchanges_max = 50 + 20 * n as u32;
-        loop {
-            self.active.clear();
-            self.active.extend((0..n as u32).filter(|&i| self.is_active[i as usize]));
-            self.solve_active(system, free);
-            system.relief(&self.trial, &mut self.relief_trial);
-            let force_scale = self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-            let slack = OVERCLOSURE_TOLERANCE * free_scale;
-            self.violating.clear();
-            for i in (0..n).filter(|&i| system.is_hard(i)) {
-                let violates = if self.is_active[i] {
-                    self.trial[i] < -FORCE_TOLERANCE * force_scale
-                } else {
-                    free[i] - self.relief_trial[i] > slack
-                };
-                if violates {
-                    self.violating.push(i as u32);
-                }
-            }
-            if self.violating.is_empty() {
-                return self.check_conflicts(system, free, free_scale).map(|()| exchanges);
-            }
-            if exchanges == exchanges_max {
-                return Err(SolveFailure::NotConverged { points: self.violating.clone() });
-            }
-            exchanges += 1;
-            let full = if self.violating.len() < best {
-                best = self.violating.len();
-                patience = FULL_EXCHANGES_WITHOUT_GAIN;
-                true
-            } else if patience > 0 {
-                patience -= 1;
-                true
-            } else {
-                false
-            };
-            let begin = if full { 0 } else { self.violating.len() - 1 };
-            for &i in &self.violating[begin..] {
-                self.is_active[i as usize] = !self.is_active[i as usize];
-            }
-        }
-    }
-
-    /// Solves `(W + C) F = h_free − onset` on the active points into `trial`; reuses the factor when neither the
-    /// points nor their compliances have changed.
-    fn solve_active(&mut self, system: &ContactSystem, free: &[f64]) {
-        let n = system.points.len();
-        let compliance = |s: &Self, i: u32| if system.is_hard(i as usize) { 0.0 } else { s.compliance[i as usize] };
-        let unchanged = self.factor_points == self.active
-            && self.active.iter().zip(&self.factor_compliance).all(|(&i, &c)| c == compliance(self, i));
-        if !unchanged {
-            self.factor_points.clone_from(&self.active);
-            self.factor_compliance.clear();
-            for k in 0..self.active.len() {
-                let c = compliance(self, self.active[k]);
-                self.factor_compliance.push(c);
-            }
-            self.factor_rows.clone_from(&self.active);
-            self.fill_factor(system);
-            let size = self.factor_rows.len();
-            if !linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch) {
-                // Dependent constraints (one node in two pairs, both sides prescribed): keep an independent subset.
-                self.keep_independent(system);
-                self.fill_factor(system);
-                let size = self.factor_rows.len();
-                let positive = linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
-                assert!(positive, "the rows left by the pivot check are independent");
-            }
-        }
-        self.right.clear();
-        for &i in &self.factor_rows {
-            let onset = if system.is_hard(i as usize) { 0.0 } else { self.onset[i as usize] };
-            self.right.push(free[i as usize] - onset);
-        }
-        linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
-        self.trial[..n].fill(0.0);
-        for (&i, &force) in self.factor_rows.iter().zip(&self.right) {
-            self.trial[i as usize] = force;
-        }
-    }
-
-    /// `W + C` on the rows of the factor, lower triangle used.
-    fn fill_factor(&mut self, system: &ContactSystem) {
-        let size = self.factor_rows.len();
-        self.factor.clear();
-        self.factor.reserve(size * size);
-        for &j in &self.factor_rows {
-            let column = system.compliance.column(j as usize);
-            let begin = self.factor.len();
-            self.factor.extend(self.factor_rows.iter().map(|&i| column[i as usize]));
-            if !system.is_hard(j as usize) {
-                let diagonal = begin / size.max(1);
-                self.factor[begin + diagonal] += self.compliance[j as usize];
-            }
-        }
-    }
-
-    /// Reduces the factor's rows to those whose pivot is more than rounding.
-    fn keep_independent(&mut self, system: &ContactSystem) {
-        self.fill_factor(system);
-        let size = self.factor_rows.len();
-        let a = &mut self.factor;
-        let diagonal: Vec<f64> = (0..size).map(|i| a[i * size + i]).collect();
-        let mut kept = Vec::with_capacity(size);
-        for j in 0..size {
-            let pivot = a[j * size + j];
-            // A thousand times the limit of the dense factorisation, so that what is kept passes there.
-            if pivot.is_nan() || pivot <= 1e-9 * diagonal[j] || diagonal[j] <= 0.0 {
-                continue;
-            }
-            kept.push(self.factor_rows[j]);
-            for k in j + 1..size {
-                let f = a[j * size + k] / pivot;
-                if f != 0.0 {
-                    for i in k..size {
-                        a[k * size + i] -= f * a[j * size + i];
-                    }
-                }
-            }
-        }
-        self.factor_rows = kept;
-    }
-
-    /// A hard point that was left out as dependent must be satisfied by the others.
-    fn check_conflicts(&self, system: &ContactSystem, free: &[f64], free_scale: f64) -> Result<(), SolveFailure> {
-        if self.factor_rows.len() == self.active.len() {
-            return Ok(());
-        }
-        let conflict = |&i: &u32| -> Option<(u32, f64)> {
-            let overclosure = free[i as usize] - self.relief_trial[i as usize];
-            let dependent = system.is_hard(i as usize) && self.factor_rows.binary_search(&i).is_err();
-            (dependent && overclosure > CONFLICT_TOLERANCE * free_scale).then_some((i, overclosure))
-        };
-        let points: Vec<_> = self.active.iter().filter_map(conflict).collect();
-        if points.is_empty() { Ok(()) } else { Err(SolveFailure::Infeasible { points }) }
-    }
-
-    /// Part of the step to take: 1 unless Π has risen again before its end, else a point near its minimum.
-    fn line_search(&self, system: &ContactSystem, forces: &[f64], relief: &[f64], overclosures: &[f64]) -> f64 {
-        let n = system.points.len();
-        // Π'(t) = (Λ + t dΛ)ᵀ W dΛ − Σ A p(h − t W dΛ) (W dΛ).
-        let slope = |t: f64| -> f64 {
-            let mut sum = 0.0;
-            for i in 0..n {
-                let rate = self.relief_trial[i] - relief[i];
-                let force = forces[i] + t * (self.trial[i] - forces[i]);
-                sum += force * rate;
-                let point = &system.points[i];
-                if let NormalBehavior::Softened(law) = &system.behaviors[point.behavior] {
-                    sum -= point.area * law.evaluate(overclosures[i] - t * rate).pressure * rate;
-                }
-            }
-            sum
-        };
-        let start = slope(0.0);
-        let end = slope(1.0);
-        if start >= 0.0 || end <= SLOPE_ACCEPTED * -start {
-            return 1.0;
-        }
-        // Illinois variant of the secant method: keeps the bracket, never stalls.
-        let (mut low, mut low_slope, mut high, mut high_slope) = (0.0, start, 1.0, end);
-        for _ in 0..60 {
-            let t = low + (high - low) * (low_slope / (low_slope - high_slope));
-            let at = slope(t);
-            if at.abs() <= 0.1 * -start {
-                return t;
-            }
-            if at < 0.0 {
-                low = t;
-                low_slope = at;
-                high_slope *= 0.5;
-            } else {
-                high = t;
-                high_slope = at;
-                low_slope *= 0.5;
-            }
-        }
-        if low > 0.0 { low } else { high }
-    }
-
-    fn is_balanced(&self, system: &ContactSystem, free: &[f64], forces: &[f64], overclosures: &[f64]) -> bool {
-        let scale = self.force_scale();
-        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, forces, overclosures[i], scale))
-    }
-
-    /// Whether the end of the present step satisfies the laws.
-    fn trial_is_balanced(&self, system: &ContactSystem, free: &[f64]) -> bool {
-        let scale = self.force_scale();
-        let overclosure = |i: usize| free[i] - self.relief_trial[i];
-        (0..system.points.len()).all(|i| self.point_is_balanced(system, i, free, &self.trial, overclosure(i), scale))
-    }
-
-    /// Largest force of the model solution.
-    fn force_scale(&self) -> f64 {
-        self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()))
-    }
-
-    /// Whether the force of a softened point is that of its law at an overclosure. Hard points are settled by the model.
-    fn point_is_balanced(
-        &self,
-        system: &ContactSystem,
-        i: usize,
-        free: &[f64],
-        forces: &[f64],
-        overclosure: f64,
-        scale: f64,
-    ) -> bool {
-        let point = &system.points[i];
-        let NormalBehavior::Softened(law) = &system.behaviors[point.behavior] else { return true };
-        let at = law.evaluate(overclosure);
-        let own = system.compliance.column(i)[i];
-        if !self.is_active[i] && at.stiffness * point.area * own <= NEGLIGIBLE_STIFFNESS && own > 0.0 {
-            // Left out of the model because its force cannot matter.
-            return true;
-        }
-        let residual = (forces[i] - point.area * at.pressure).abs();
-        if residual <= FORCE_TOLERANCE * scale {
-            return true;
-        }
-        // The overclosure is a sum whose terms may cancel: what its rounding does to the force cannot be asked for.
-        let terms: f64 = system.compliance.column(i).iter().zip(forces).map(|(w, f)| (w * f).abs()).sum();
-        residual <= 16.0 * f64::EPSILON * (free[i].abs() + terms) * at.stiffness * point.area
-    }
-}
-
-#[cfg(test)]
-mod tests;

@@ -1,7 +1,7 @@
 //! The contact solve against enumeration of all active sets and against the conditions themselves.
 
 use super::*;
-use crate::law::{Exponential, Linear, PressureOverclosure, Tabular};
+use crate::law::{Exponential, Linear, PressureLaw, PressureOverclosure, Tabular};
 
 /// Seeded numbers in (-1, 1): a multiplicative congruential generator is enough for test problems.
 struct Numbers(u64);
@@ -28,7 +28,60 @@ fn compliance(numbers: &mut Numbers, n: usize, rank: usize) -> Dense {
 fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize) -> usize) -> ContactSystem {
     let points =
         (0..compliance.rows).map(|i| PointBehavior { area: 0.5 + 0.1 * i as f64, behavior: pick(i) }).collect();
-    ContactSystem { compliance, points, behaviors }
+    let gap_motions = Dense::zeros(compliance.rows, 0);
+    ContactSystem { compliance, points, behaviors, gap_motions, resisted: vec![], springs: vec![] }
+}
+
+/// The same with motions.
+fn floating(mut system: ContactSystem, gap_motions: Dense) -> ContactSystem {
+    system.springs = initial_springs(&system.compliance, &gap_motions);
+    system.resisted = vec![true; gap_motions.columns];
+    system.gap_motions = gap_motions;
+    system
+}
+
+/// Unknowns of a system, from nothing.
+#[derive(Clone)]
+struct Solution {
+    forces: Vec<f64>,
+    relief: Vec<f64>,
+    closed: Vec<bool>,
+    overclosures: Vec<f64>,
+    motions: Vec<f64>,
+    springs: Vec<f64>,
+}
+
+impl Solution {
+    fn new(system: &ContactSystem) -> Self {
+        let n = system.points.len();
+        Self {
+            forces: vec![0.0; n],
+            relief: vec![0.0; n],
+            closed: vec![false; n],
+            overclosures: vec![0.0; n],
+            motions: vec![0.0; system.springs.len()],
+            springs: system.springs.clone(),
+        }
+    }
+
+    fn solve(
+        &mut self,
+        solver: &mut ContactSolver,
+        system: &ContactSystem,
+        free: &[f64],
+        load: &[f64],
+    ) -> Result<SolveCounts, SolveFailure> {
+        let load_scale: Vec<f64> = load.iter().map(|l| l.abs()).collect();
+        let mut unknowns = Unknowns {
+            forces: &mut self.forces,
+            relief: &mut self.relief,
+            closed: &mut self.closed,
+            overclosures: &mut self.overclosures,
+            motions: &mut self.motions,
+            springs: &mut self.springs,
+        };
+        solver.solve(system, Problem { free, load, load_scale: &load_scale }, &mut unknowns)
+    }
 }
 
 fn softened() -> Vec<NormalBehavior> {
@@ -45,17 +98,14 @@ fn softened() -> Vec<NormalBehavior> {
 }
 
 fn solve(system: &ContactSystem, free: &[f64]) -> (Vec<f64>, Vec<f64>, Result<SolveCounts, SolveFailure>) {
-    let n = free.len();
-    let (mut forces, mut relief, mut closed, mut overclosures) =
-        (vec![0.0; n], vec![0.0; n], vec![false; n], vec![0.0; n]);
-    let result =
-        ContactSolver::new(system).solve(system, free, &mut forces, &mut relief, &mut closed, &mut overclosures);
+    let mut solution = Solution::new(system);
+    let result = solution.solve(&mut ContactSolver::new(system), system, free, &[]);
     if result.is_ok() {
-        let mut recomputed = vec![0.0; n];
-        system.relief(&forces, &mut recomputed);
-        assert_eq!(relief, recomputed, "a restored state has the same bits");
+        let mut recomputed = vec![0.0; free.len()];
+        system.relief(&solution.forces, &mut recomputed);
+        assert_eq!(solution.relief, recomputed, "a restored state has the same bits");
     }
-    (forces, overclosures, result)
+    (solution.forces, solution.overclosures, result)
 }
 
 /// Solution by trying all sets of closed points, with plain Gaussian elimination.
@@ -172,15 +222,13 @@ fn a_second_solve_from_the_solution_needs_one_iteration_and_no_new_factor() {
     let mut numbers = Numbers(5);
     let problem = system(compliance(&mut numbers, 8, 10), softened(), |_| 0);
     let free: Vec<f64> = (0..8).map(|_| numbers.next()).collect();
-    let (mut forces, mut relief, mut closed, mut overclosures) =
-        (vec![0.0; 8], vec![0.0; 8], vec![false; 8], vec![0.0; 8]);
     let mut solver = ContactSolver::new(&problem);
-    solver.solve(&problem, &free, &mut forces, &mut relief, &mut closed, &mut overclosures).expect("solvable");
-    let factor = solver.factor.clone();
-    let counts =
-        solver.solve(&problem, &free, &mut forces, &mut relief, &mut closed, &mut overclosures).expect("solvable");
+    let mut solution = Solution::new(&problem);
+    solution.solve(&mut solver, &problem, &free, &[]).expect("solvable");
+    let factors = solver.factors();
+    let counts = solution.solve(&mut solver, &problem, &free, &[]).expect("solvable");
     assert_eq!(counts, SolveCounts { equilibrium_iterations: 1, severe_discontinuity_iterations: 0 });
-    assert_eq!(factor, solver.factor);
+    assert_eq!(factors, solver.factors());
 }
 
 #[test]
@@ -190,21 +238,11 @@ fn a_solve_that_starts_at_or_beside_the_solution_stays_there() {
         let n = 2 + case % 9;
         let system = system(compliance(&mut numbers, n, n + 2), softened(), |i| (i + case) % 5);
         let free: Vec<f64> = (0..n).map(|_| 0.1 * numbers.next()).collect();
-        let (mut forces, _, first) = solve(&system, &free);
-        first.expect("convex");
+        let mut solution = Solution::new(&system);
+        solution.solve(&mut ContactSolver::new(&system), &system, &free, &[]).expect("convex");
         for _ in 0..20 {
             let nearby: Vec<f64> = free.iter().map(|h| h * (1.0 + 1e-15 * numbers.next())).collect();
-            let (mut relief, mut overclosures) = (vec![0.0; n], vec![0.0; n]);
-            system.relief(&forces, &mut relief);
-            let mut closed: Vec<bool> = forces.iter().map(|&force| force > 0.0).collect();
-            let again = ContactSolver::new(&system).solve(
-                &system,
-                &nearby,
-                &mut forces,
-                &mut relief,
-                &mut closed,
-                &mut overclosures,
-            );
+            let again = solution.solve(&mut ContactSolver::new(&system), &system, &nearby, &[]);
             let counts = again.unwrap_or_else(|failure| panic!("case {case}: {failure:?}"));
             assert!(counts.equilibrium_iterations <= 8, "case {case}: {counts:?}");
         }
@@ -229,5 +267,92 @@ fn a_stiff_law_is_nearly_hard_and_a_negligible_one_nothing() {
                 assert!((force - expected).abs() <= 1e-6 * scale, "case {case}, slope {slope:e}: {force} {expected}");
             }
         }
+    }
+}
+
+/// `n` points over a plane resist three motions of one body and, with other arms, three of another.
+fn arms(numbers: &mut Numbers, n: usize, motions: usize) -> Dense {
+    let mut d = Dense::zeros(n, motions);
+    d.values.iter_mut().for_each(|x| *x = numbers.next());
+    d.column_mut(0).fill(-1.0);
+    d
+}
+
+#[test]
+fn bodies_that_only_contact_holds_come_to_balance_under_every_law() {
+    let mut numbers = Numbers(17);
+    let mut behaviors = softened();
+    behaviors.push(NormalBehavior::Hard);
+    for case in 0..600 {
+        let k = 1 + case % 4;
+        let n = k + 2 + case % 9;
+        let pick = |i: usize| if case < 300 { case % 6 } else { (i * 7 + case) % 6 };
+        let d = arms(&mut numbers, n, k);
+        let system = floating(system(compliance(&mut numbers, n, n + 2), behaviors.clone(), pick), d.clone());
+        // Loads that forces of pressed points can balance, so that a solution exists.
+        let push: Vec<f64> = (0..n).map(|_| 0.5 * (1.0 + numbers.next())).collect();
+        let load: Vec<f64> = (0..k).map(|m| d.column(m).iter().zip(&push).map(|(d, f)| d * f).sum()).collect();
+        let gap = [1e-3, 1.0, 1e4][case % 3];
+        let free: Vec<f64> = (0..n).map(|_| gap * (numbers.next() - 1.0)).collect();
+        let mut solution = Solution::new(&system);
+        let result = solution.solve(&mut ContactSolver::new(&system), &system, &free, &load);
+        let counts = result.unwrap_or_else(|e| panic!("case {case}: {e:?}"));
+        assert!(counts.equilibrium_iterations < 400, "case {case}: {counts:?}");
+        let scale = solution.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        for m in 0..k {
+            let carried: f64 = d.column(m).iter().zip(&solution.forces).map(|(d, f)| d * f).sum();
+            assert!((carried - load[m]).abs() < 1e-11 * scale, "case {case}: {carried} {}", load[m]);
+        }
+        for i in 0..n {
+            let residual = match &behaviors[pick(i)] {
+                NormalBehavior::Hard => {
+                    assert!(solution.overclosures[i] < 1e-9 * scale, "case {case}: {:e}", solution.overclosures[i]);
+                    if solution.overclosures[i].abs() < 1e-9 * scale { 0.0 } else { solution.forces[i].abs() }
+                }
+                NormalBehavior::Softened(law) => {
+                    let at = law.evaluate(solution.overclosures[i]);
+                    let rounding = 1e-11 * scale.max(gap) * at.stiffness;
+                    (solution.forces[i] - system.points[i].area * at.pressure).abs() - rounding
+                }
+            };
+            assert!(
+                residual < 1e-9 * scale,
+                "case {case} point {i}: {residual:e} of {scale:e} {:?} {:?} {:?} {counts:?}",
+                solution.forces,
+                solution.overclosures,
+                solution.motions
+            );
+        }
+    }
+}
+
+#[test]
+fn a_body_pulled_away_is_reported_with_its_motion_and_an_unloaded_one_stays() {
+    let mut numbers = Numbers(19);
+    let n = 5;
+    let mut d = Dense::zeros(n, 2);
+    d.column_mut(0).fill(-1.0);
+    d.column_mut(1).copy_from_slice(&[-1.0, -0.5, 0.0, 0.5, 1.0]);
+    for behavior in softened().into_iter().chain([NormalBehavior::Hard]) {
+        let system = floating(system(compliance(&mut numbers, n, n + 2), vec![behavior], |_| 0), d.clone());
+        let free = vec![-0.2; n];
+        let mut solver = ContactSolver::new(&system);
+        let mut solution = Solution::new(&system);
+        solution.solve(&mut solver, &system, &free, &[0.0, 0.0]).expect("nothing acts");
+        assert_eq!(solution.motions, [0.0, 0.0]);
+        match solution.clone().solve(&mut solver, &system, &free, &[3.0, 0.0]) {
+            Err(SolveFailure::Unheld { motions }) => assert!(motions[0] > 100.0 * motions[1].abs(), "{motions:?}"),
+            other => panic!("{other:?}"),
+        }
+        let before = solution.clone();
+        solution.solve(&mut solver, &system, &free, &[-3.0, 0.5]).expect("pressed");
+        assert!((solution.forces.iter().sum::<f64>() - 3.0).abs() < 1e-11);
+        // A second time from there: the same place.
+        let first = solution.clone();
+        solution.solve(&mut solver, &system, &free, &[-3.0, 0.5]).expect("pressed");
+        for (a, b) in solution.motions.iter().zip(&first.motions) {
+            assert!((a - b).abs() <= 1e-11 * a.abs().max(1.0), "{a} {b}");
+        }
+        assert_eq!(before.forces, vec![0.0; n]);
     }
 }

@@ -113,11 +113,19 @@ pub struct DenseScratch {
     memory_for: usize,
 }
 
-/// Eigenvalues (ascending) and eigenvectors (columns) of a small symmetric matrix.
-pub fn eigen(matrix: &[[f64; 6]; 6]) -> ([f64; 6], [[f64; 6]; 6]) {
-    let view = faer::Mat::from_fn(6, 6, |i, j| matrix[i][j]);
-    let decomposition = view.self_adjoint_eigen(faer::Side::Lower).expect("a finite symmetric matrix has eigenvectors");
-    let values = std::array::from_fn(|i| decomposition.S()[i]);
-    let vectors = std::array::from_fn(|j| std::array::from_fn(|i| decomposition.U()[(i, j)]));
-    (values, vectors)
+/// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix.
+pub fn eigen(matrix: &Dense) -> (Vec<f64>, Dense) {
+    let n = matrix.rows;
+    if n == 0 {
+        return (Vec::new(), Dense::default());
+    }
+    let decomposition =
+        matrix.view().self_adjoint_eigen(faer::Side::Lower).expect("a finite symmetric matrix has eigenvectors");
+    let mut vectors = Dense::zeros(n, n);
+    for j in 0..n {
+        for (i, x) in vectors.column_mut(j).iter_mut().enumerate() {
+            *x = decomposition.U()[(i, j)];
+        }
+    }
+    ((0..n).map(|i| decomposition.S()[i]).collect(), vectors)
 }

@@ -1,8 +1,8 @@
-//! Prescribed directions and the elements that carry their reactions.
+//! What elements do to prescribed directions: couplings of displacement columns, and internal forces.
 
 use super::assembly::element_stiffness;
-use super::body::Context;
 use super::columns::Column;
+use super::context::Context;
 use super::linear::Dense;
 use crate::element::{Coordinates, Elasticity, Stiffness};
 use crate::model::{ELEMENT_NODES_MAX, Model, NodeId};
@@ -10,70 +10,35 @@ use crate::model::{ELEMENT_NODES_MAX, Model, NodeId};
 /// Vectors at the nodes of an element; those beyond its node count are zero.
 type NodeVectors = [[f64; 3]; ELEMENT_NODES_MAX];
 
-/// Which directions of which nodes are prescribed.
-pub struct Supports {
-    /// Bit d of a node: direction d is prescribed.
-    directions: Vec<u8>,
-}
-
-impl Supports {
-    /// Collects the prescribed directions of the model part and of all steps.
-    pub fn new(model: &Model) -> Self {
-        let mut directions = vec![0u8; model.mesh.nodes.len()];
-        let lines = model.initial_boundaries.iter().chain(model.steps.iter().flat_map(|s| &s.boundaries));
-        for line in lines {
-            for node in &line.nodes {
-                directions[node.index()] |= 1 << line.direction;
-            }
+/// Forces that unit displacement columns cause on every direction of the elements they touch: calls
+/// `add(node, direction, column, force)` with `K û_j`, element by element. Returns `û_iᵀ K û_j`.
+pub fn couplings(context: &Context<'_>, elements: &[u32], mut add: impl FnMut(NodeId, usize, usize, f64)) -> Dense {
+    let mut energy = Dense::zeros(context.columns.len(), context.columns.len());
+    let patterns = Patterns::new(context.model, context.columns);
+    let mut touched: Vec<(usize, NodeVectors)> = Vec::new();
+    let mut k = Stiffness::default();
+    for &e in elements {
+        let nodes = context.model.mesh.elements.nodes(e as usize);
+        patterns.gather(nodes, &mut touched);
+        if touched.is_empty() {
+            continue;
         }
-        Self { directions }
-    }
-
-    /// Whether a direction (0..3) of a node is prescribed.
-    pub fn is_prescribed(&self, node: NodeId, direction: usize) -> bool {
-        self.directions[node.index()] & (1 << direction) != 0
-    }
-
-    /// Whether any direction of a node is prescribed.
-    pub fn touches(&self, node: NodeId) -> bool {
-        self.directions[node.index()] != 0
-    }
-
-    /// Forces that unit displacement columns cause on every direction of the elements they touch: calls
-    /// `add(node, direction, column, force)` with `K û_j`, element by element. Returns `û_iᵀ K û_j`.
-    pub fn couplings(
-        &self,
-        context: &Context<'_>,
-        elements: &[u32],
-        mut add: impl FnMut(NodeId, usize, usize, f64),
-    ) -> Dense {
-        let mut energy = Dense::zeros(context.columns.len(), context.columns.len());
-        let patterns = Patterns::new(context.model, context.columns);
-        let mut touched: Vec<(usize, NodeVectors)> = Vec::new();
-        let mut k = Stiffness::default();
-        for &e in elements {
-            let nodes = context.model.mesh.elements.nodes(e as usize);
-            patterns.gather(nodes, &mut touched);
-            if touched.is_empty() {
-                continue;
+        element_stiffness(context.model, context.elasticities, e, &mut k);
+        for (j, u) in &touched {
+            let forces = k.force(&u[..nodes.len()]);
+            let forces = &forces[..nodes.len()];
+            for (i, v) in &touched {
+                energy.column_mut(*j)[*i] +=
+                    v.iter().zip(forces).flat_map(|(v, f)| v.iter().zip(f)).map(|(v, f)| v * f).sum::<f64>();
             }
-            element_stiffness(context.model, context.elasticities, e, &mut k);
-            for (j, u) in &touched {
-                let forces = k.force(&u[..nodes.len()]);
-                let forces = &forces[..nodes.len()];
-                for (i, v) in &touched {
-                    energy.column_mut(*j)[*i] +=
-                        v.iter().zip(forces).flat_map(|(v, f)| v.iter().zip(f)).map(|(v, f)| v * f).sum::<f64>();
-                }
-                for (&node, force) in nodes.iter().zip(forces) {
-                    for (direction, &f) in force.iter().enumerate() {
-                        add(node, direction, *j, f);
-                    }
+            for (&node, force) in nodes.iter().zip(forces) {
+                for (direction, &f) in force.iter().enumerate() {
+                    add(node, direction, *j, f);
                 }
             }
         }
-        energy
     }
+    energy
 }
 
 /// Displacement columns by node.

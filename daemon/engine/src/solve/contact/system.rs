@@ -1,0 +1,74 @@
+//! The contact points as the solver sees them.
+
+use crate::law::{NormalBehavior, PressureLaw};
+use crate::solve::linear::Dense;
+
+/// Area and behaviour of a contact point.
+#[derive(Clone, Debug)]
+pub struct PointBehavior {
+    /// Tributary area [length²].
+    pub area: f64,
+    /// Index into the behaviours.
+    pub behavior: usize,
+}
+
+/// Contact points, what their forces do, and the motions that they hold: immutable.
+pub struct ContactSystem {
+    /// `W = B K⁻¹ Bᵀ` [length/force].
+    pub compliance: Dense,
+    /// Points.
+    pub points: Vec<PointBehavior>,
+    /// Behaviours that the points refer to.
+    pub behaviors: Vec<NormalBehavior>,
+    /// `D`: points x motions of bodies that only contact holds.
+    pub gap_motions: Dense,
+    /// Whether some point resists the motion.
+    pub resisted: Vec<bool>,
+    /// Springs on the motions to begin with: soft against the bodies where contact may hold them [force/length].
+    pub springs: Vec<f64>,
+}
+
+impl ContactSystem {
+    /// `W F`: by how much contact forces take the overclosures back.
+    pub fn relief(&self, forces: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.compliance.multiply_add(forces, out);
+    }
+
+    /// Final overclosures `h_free − W F + D α` from `free` and the `relief` `W F`. The one place where they are computed, so that a
+    /// restored state has the same bits.
+    pub fn overclosures(&self, free: &[f64], relief: &[f64], motions: &[f64], out: &mut [f64]) {
+        for ((h, free), relief) in out.iter_mut().zip(free).zip(relief) {
+            *h = free - relief;
+        }
+        self.gap_motions.multiply_add(motions, out);
+    }
+
+    /// Energy stored in softened contact at the closed points: before the first increment nothing is closed yet, however
+    /// far the meshes overlap.
+    pub fn energy(&self, overclosures: &[f64], closed: &[bool]) -> f64 {
+        let mut sum = 0.0;
+        for (i, point) in self.points.iter().enumerate().filter(|&(i, _)| closed[i]) {
+            if let NormalBehavior::Softened(law) = &self.behaviors[point.behavior] {
+                sum += point.area * law.evaluate(overclosures[i]).energy;
+            }
+        }
+        sum
+    }
+
+    /// Whether a point is under hard contact.
+    pub fn is_hard(&self, point: usize) -> bool {
+        matches!(self.behaviors[self.points[point].behavior], NormalBehavior::Hard)
+    }
+}
+
+/// Springs to begin with: soft against the bodies where contact may hold each motion.
+pub fn initial_springs(compliance: &Dense, gap_motions: &Dense) -> Vec<f64> {
+    let of_motion = |m: usize| {
+        let stiffness = |(i, d): (usize, &f64)| d * d / compliance.column(i)[i];
+        let all: Vec<f64> =
+            gap_motions.column(m).iter().enumerate().map(stiffness).filter(|s| s.is_finite() && *s > 0.0).collect();
+        if all.is_empty() { 1.0 } else { super::SPRING_RATIO * all.iter().sum::<f64>() / all.len() as f64 }
+    };
+    (0..gap_motions.columns).map(of_motion).collect()
+}
