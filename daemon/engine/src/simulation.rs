@@ -44,6 +44,8 @@ pub struct Simulation {
 #[derive(Default)]
 pub(crate) struct Work {
     pub coefficients: Vec<f64>,
+    /// Column, value at the start, value at the end of each driven input.
+    pub driven: Vec<(usize, f64, f64)>,
     pub free: Vec<f64>,
     pub forces: Vec<f64>,
     pub closed: Vec<bool>,
@@ -112,6 +114,7 @@ impl Simulation {
         };
         let work = Work {
             coefficients: Vec::with_capacity(prepared.real_columns),
+            driven: Vec::with_capacity(inputs),
             free: vec![0.0; n],
             forces: vec![0.0; n],
             closed: vec![false; n],

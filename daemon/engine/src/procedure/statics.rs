@@ -37,11 +37,22 @@ impl Simulation {
         let Procedure::Static(control) = prepared.model.steps[step].procedure;
         let tolerance = TIME_TOLERANCE * control.period.max(target.abs());
         let interval = self.begin_interval(target, tolerance);
+        let outcome = self.advance_interval(&interval, watch);
+        // The list is used again: an increment allocates nothing.
+        self.work.driven = interval.driven;
+        outcome
+    }
+
+    fn advance_interval(&mut self, interval: &Interval, watch: &mut dyn Watch) -> AdvanceOutcome {
+        let prepared = self.prepared.clone();
+        let step = self.state.step as usize;
+        let Procedure::Static(control) = prepared.model.steps[step].procedure;
+        let (target, tolerance) = (interval.end, interval.tolerance);
         let limit = prepared.model.steps[step].increments_max;
         let mut done = 0;
         if target <= self.state.step_time + tolerance && self.state.pending.iter().any(Option::is_some) {
             // New inputs at the same time: they act at once.
-            if let Err(reason) = self.attempt(self.state.step_time, &interval) {
+            if let Err(reason) = self.attempt(self.state.step_time, interval) {
                 return AdvanceOutcome::Stopped { reason: reason.describe(self) };
             }
             self.refresh();
@@ -60,7 +71,7 @@ impl Simulation {
                 let proposed = self.proposed_time(&control);
                 let (end, clipped) = next_time(&control, self.state.step_time, proposed, target, tolerance);
                 let size = end - self.state.step_time;
-                match self.attempt(end, &interval) {
+                match self.attempt(end, interval) {
                     Ok((counts, changes)) => {
                         done += 1;
                         self.complete(&control, clipped, attempt, counts);
@@ -81,12 +92,13 @@ impl Simulation {
                 }
             }
         }
-        self.finish_interval(&interval);
+        self.finish_interval(interval);
         AdvanceOutcome::Reached
     }
 
     fn begin_interval(&mut self, target: f64, tolerance: f64) -> Interval {
-        let mut driven = Vec::new();
+        let mut driven = std::mem::take(&mut self.work.driven);
+        driven.clear();
         for (input, &column) in self.prepared.loading.input_columns.iter().enumerate() {
             if self.on_last_step() && (self.state.driven[input] || self.state.pending[input].is_some()) {
                 let now = self.state.coefficients[column];
