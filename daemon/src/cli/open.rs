@@ -68,6 +68,13 @@ pub fn report(diagnostics: &[Diagnostic]) {
     }
 }
 
+/// Every finding, and their number: the deck cannot be taken.
+pub fn refuse(path: &Path, findings: &[Diagnostic]) -> Exit {
+    report(findings);
+    complain(&count(path, findings));
+    Exit::InputWrong
+}
+
 /// `deck.inp: 2 errors, 1 warning`.
 pub fn count(path: &Path, diagnostics: &[Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|d| d.is_error()).count();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use overclosure::model::{RestartFrequency, RestartRequest};
-use overclosure::output::{RestartOrigin, holds_results};
+use overclosure::output::{RestartOrigin, Standing, holds_results};
 use overclosure::simulation::Simulation;
 
 use super::{Exit, complain};
@@ -32,8 +32,8 @@ impl Restart {
         Ok(Self { file, bytes })
     }
 
-    /// Brings a new simulation to where the snapshot stands.
-    pub fn apply(self, simulation: &mut Simulation) -> Result<RestartOrigin, Exit> {
+    /// Brings a new simulation to where the snapshot stands, and tells unless it shall be quiet.
+    pub fn apply(self, simulation: &mut Simulation, quiet: bool) -> Result<RestartOrigin, Exit> {
         let Self { file, bytes } = self;
         let file = file.display().to_string();
         if let Err(error) = simulation.restore(&bytes) {
@@ -48,17 +48,13 @@ impl Restart {
             ));
             return Err(Exit::InputWrong);
         }
-        Ok(RestartOrigin { file, standing: simulation.standing() })
+        let standing = simulation.standing();
+        let Standing { step, increment, time } = standing;
+        if !quiet {
+            complain(&format!("goes on from {file}: step {step}, increment {increment}, total time {time}"));
+        }
+        Ok(RestartOrigin { file, standing })
     }
-}
-
-/// `went on from FILE: step 1, increment 5, total time 0.25`.
-pub fn told(origin: &RestartOrigin) -> String {
-    let RestartOrigin { file, standing } = origin;
-    format!(
-        "goes on from {file}: step {}, increment {}, total time {}",
-        standing.step, standing.increment, standing.time
-    )
 }
 
 /// A snapshot every so many increments, whatever the deck asks for.

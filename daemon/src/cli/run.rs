@@ -17,7 +17,7 @@ use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Sim
 
 use super::clock::{Clock, Stage};
 use super::monitor::{Followed, Monitor, Sizes};
-use super::open::{open_deck, read_ports, report};
+use super::open::{open_deck, read_ports, refuse, report};
 use super::progress::Progress;
 use super::restart::{self, Restart};
 use super::{DialectArg, Exit, PathArg, complain, interrupt, settings};
@@ -92,12 +92,7 @@ impl Job {
         let mut clock = Clock::start(Stage::Read);
         let progress = Progress::new(quiet);
         progress.stage(Stage::Read);
-        let name = match deck.file_stem() {
-            Some(stem) => stem.to_string_lossy().into_owned(),
-            None => String::from("job"),
-        };
-        let directory = out.unwrap_or_else(|| deck.parent().map(Path::to_owned).unwrap_or_default());
-        let directory = if directory.as_os_str().is_empty() { PathBuf::from(".") } else { directory };
+        let (name, directory) = destination(&deck, out);
         let restart = restart.map(|file| Restart::read(file, &directory, &name)).transpose()?;
         let dialect = dialect.into();
         let assignments = settings::parse(&sets);
@@ -105,11 +100,8 @@ impl Job {
         let opened = open_deck(&deck, dialect)?;
         let ports_toml = ports_toml?;
         // A misspelt name need not wait for the factorisation.
-        let ports = port::ports_of(&opened.model, ports_toml.as_deref()).map_err(|findings| {
-            report(&findings);
-            complain(&super::open::count(&deck, &findings));
-            Exit::InputWrong
-        })?;
+        let ports =
+            port::ports_of(&opened.model, ports_toml.as_deref()).map_err(|findings| refuse(&deck, &findings))?;
         let settings = settings::resolve(&assignments, &ports.inputs)?;
         let options = PrepareOptions { path: path.into(), threads, ports_toml };
         let mut diagnostics = opened.diagnostics;
@@ -118,25 +110,14 @@ impl Job {
             clock.enter(stage);
             progress.stage(stage);
         });
-        let prepared = progress.hidden_while(|| match prepared {
-            Ok(prepared) => Ok(Arc::new(prepared)),
-            Err(findings) => {
-                report(&findings);
-                complain(&super::open::count(&deck, &findings));
-                Err(Exit::InputWrong)
-            }
-        })?;
+        let prepared = prepared.map_err(|findings| progress.hidden_while(|| refuse(&deck, &findings)));
+        let prepared = Arc::new(prepared?);
         progress.hidden_while(|| report(prepared.warnings()));
         diagnostics.extend_from_slice(prepared.warnings());
         let mut simulation = Simulation::new(Arc::clone(&prepared));
-        let origin = progress.hidden_while(|| {
-            let origin = restart.map(|restart| restart.apply(&mut simulation)).transpose()?;
-            settings::apply(settings, &mut simulation)?;
-            if let Some(origin) = origin.as_ref().filter(|_| !quiet) {
-                complain(&restart::told(origin));
-            }
-            Ok(origin)
-        })?;
+        let origin =
+            restart.map(|restart| progress.hidden_while(|| restart.apply(&mut simulation, quiet))).transpose()?;
+        progress.hidden_while(|| settings::apply(settings, &mut simulation))?;
         let files = WriteOptions { snapshots: snapshots.map(restart::every), restarted: origin.is_some() };
         Ok(Self {
             name,
@@ -224,6 +205,13 @@ impl Job {
         let inputs = self.prepared.ports().inputs.iter().enumerate();
         inputs.filter_map(|(i, port)| Some((port.name.clone(), self.simulation.magnitude(i)?))).collect()
     }
+}
+
+/// Name of the job and folder of its results.
+fn destination(deck: &Path, out: Option<PathBuf>) -> (String, PathBuf) {
+    let name = deck.file_stem().map_or_else(|| String::from("job"), |stem| stem.to_string_lossy().into_owned());
+    let folder = out.unwrap_or_else(|| deck.parent().map(Path::to_owned).unwrap_or_default());
+    (name, if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder })
 }
 
 fn failed(error: &OutputError) -> Exit {
