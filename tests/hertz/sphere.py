@@ -89,7 +89,7 @@ def cut_area(mesh):
     for brick, _ in mesh.outer:
         a, b, c, d = mesh.points[mesh.bricks[brick, 4:8]]
         total += 0.5 * np.linalg.norm(np.cross(c - a, d - b))
-    return total
+    return float(total)
 
 
 @dataclass(frozen=True)

@@ -85,3 +85,13 @@ def test_c03_what_is_left_on_a_fine_mesh_belongs_to_the_bodies(tmp_path, light):
     small = light[20].p_max / hertz(problem, light[20].force_per_length).p_max - 1.0
     assert 0.001 < full < 0.002
     assert abs(small) < 0.1 * full
+
+
+def test_c03_under_its_force_gives_the_pair_of_the_case(tmp_path):
+    """35 kN/mm as an even pressure on the cut; contact alone holds the roller along z. Published: a = 6.21, p_max = 3585.37."""
+    problem, expected = roller(), reference("C03")["expected"]
+    for elements, allowed in ((5, 0.003), (10, 0.001), (20, 0.0003)):
+        answer = solve(problem, elements, tmp_path, "force")
+        assert answer.force_per_length == pytest.approx(problem.force_per_length, rel=1e-9)
+        assert answer.p_max == pytest.approx(expected["p_max"], rel=allowed)
+        assert abs(answer.a - expected["a"]) < expected["a"] / (elements - 0.5)

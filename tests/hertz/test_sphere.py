@@ -98,3 +98,18 @@ def test_c01_deviation_from_half_spaces_falls_with_the_load(answers, tmp_path):
     flats = ball_between_flats(light.radius, answer.force, light.young, light.poisson)
     assert answer.approach == pytest.approx(flats, rel=0.0015)
     assert answer.p_max == pytest.approx(hertz(light, answer.force).p_max, rel=0.0015)
+
+
+@pytest.mark.parametrize("elements", [5, 10])
+def test_c01_under_its_force_the_peak_is_that_of_the_case(tmp_path, elements):
+    """The ball presses with 100 N; contact alone holds it along z."""
+    expected = reference("C01")["expected"]
+    problem = ball()
+    answer = solve(problem, elements, tmp_path, "force")
+    assert answer.force == pytest.approx(problem.force, rel=1e-9)
+    assert answer.p_max == pytest.approx(expected["p_max"], rel={5: 0.008, 10: 0.002}[elements])
+    closed = max(r for r, pressure, _ in answer.profile if pressure > 0.0)
+    assert abs(closed - expected["a"]) < expected["a"] / (elements - 0.5)
+    # The mean of the equator, which the even pressure does not keep plane.
+    flats = ball_between_flats(problem.radius, problem.force, problem.young, problem.poisson)
+    assert answer.approach == pytest.approx(flats, rel=0.0015)
