@@ -22,6 +22,7 @@ use overclosure::simulation::{AdvanceOutcome, IncrementReport, PrepareOptions, P
 use serde_json::{Value, json};
 
 const LINEAR: &str = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n3.5e6";
+const DRIVE: punch::Drive = punch::Drive::Displacement;
 const INCREMENTS: usize = 200;
 /// Points that may change in an increment of the second kind.
 const FEW: std::ops::RangeInclusive<usize> = 1..=10;
@@ -61,12 +62,11 @@ struct Cost {
 
 impl Bench {
     fn new(n: u32) -> Self {
-        let reading = deck::read_text(&punch::deck(n, LINEAR), Dialect::Calculix);
+        let reading = deck::read_text(&punch::deck(n, LINEAR, DRIVE), Dialect::Calculix);
         let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
         let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {});
         let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
-        let input = |name: &str| prepared.ports().input(name).expect("an input of the deck");
-        let (rest, corner) = (input(punch::REST), input(punch::CORNER));
+        let [rest, corner] = DRIVE.inputs().map(|name| prepared.ports().input(name).expect("an input of the deck"));
         Self { simulation: Simulation::new(prepared), rest, corner, time: 0.0 }
     }
 
@@ -85,11 +85,11 @@ impl Bench {
 
     /// Increments about a loaded state.
     fn stays(&mut self) -> Vec<Cost> {
-        let corner = 0.5 * punch::DEPTH;
-        self.advance(punch::DEPTH, corner);
+        let corner = 0.5 * DRIVE.full();
+        self.advance(DRIVE.full(), corner);
         let costs = (0..INCREMENTS).map(|i| {
             let share = 1.0 + 1e-5 * (0.1 * i as f64).sin();
-            let cost = self.advance(share * punch::DEPTH, share * corner);
+            let cost = self.advance(share * DRIVE.full(), share * corner);
             assert_eq!((cost.seen.increments, cost.seen.changes), (1, 0), "increment {i}: the active set has to stay");
             cost
         });
@@ -99,19 +99,19 @@ impl Bench {
     /// Lifts the corner from the pressed state until it opens no more points, and down again, as often as needed. The size of the
     /// lift follows the number of changes; increments without or with too many changes are not counted.
     fn changes(&mut self) -> Vec<Cost> {
-        let (mut corner, mut lift, mut direction) = (punch::DEPTH, 1e-3, 1.0);
-        self.advance(punch::DEPTH, corner);
+        let (mut corner, mut lift, mut direction) = (DRIVE.full(), 1e-3, 1.0);
+        self.advance(DRIVE.full(), corner);
         let mut costs = Vec::new();
         for _ in 0..20 * INCREMENTS {
-            corner -= direction * lift * punch::DEPTH;
-            let cost = self.advance(punch::DEPTH, corner);
+            corner -= direction * lift * DRIVE.full();
+            let cost = self.advance(DRIVE.full(), corner);
             let changes = cost.seen.changes;
             if FEW.contains(&changes) {
                 costs.push(cost);
             } else {
                 lift = (if changes == 0 { 1.2 } else { 0.5 } * lift).clamp(LIFT[0], LIFT[1]);
             }
-            let share = corner / punch::DEPTH;
+            let share = corner / DRIVE.full();
             if share.abs() > 1.0 {
                 direction = share.signum();
             }

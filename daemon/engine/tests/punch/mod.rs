@@ -1,15 +1,44 @@
 //! The punch of the benchmarks as a deck: a block of n x n x n/2 bricks pressed into a larger one on a mesh that does not match.
-//! The top is moved by two inputs, [`REST`] and [`CORNER`]: moved alike they press the punch down flat; the corner lifted alone
-//! opens contact points one after another.
+//! Two inputs act on the top: one on a quarter of it around a corner, one on the rest. Alike they press the punch down flat; the
+//! corner lifted alone opens contact points one after another.
 
 use std::fmt::Write;
 
-/// Input that moves the top of the punch, but for one quarter of it.
-pub const REST: &str = "boundary.NREST.3";
-/// Input that moves the quarter of the top around one corner.
-pub const CORNER: &str = "boundary.NCORNER.3";
-/// Displacement of both by the deck [length].
-pub const DEPTH: f64 = -0.005;
+/// What acts on the top.
+#[derive(Clone, Copy, Debug)]
+pub enum Drive {
+    /// Prescribed displacements: they hold the punch.
+    Displacement,
+    /// Forces on the nodes: contact alone holds the punch against them.
+    Force,
+}
+
+impl Drive {
+    /// The inputs on the rest of the top and on its corner.
+    pub fn inputs(self) -> [&'static str; 2] {
+        match self {
+            Self::Displacement => ["boundary.NREST.3", "boundary.NCORNER.3"],
+            Self::Force => ["cload.NREST.3", "cload.NCORNER.3"],
+        }
+    }
+
+    /// Value of both by the deck: displacement [length], or force on each node.
+    pub fn full(self) -> f64 {
+        match self {
+            Self::Displacement => -0.005,
+            Self::Force => -10.0,
+        }
+    }
+
+    /// The lines of the step.
+    fn lines(self) -> String {
+        let full = self.full();
+        match self {
+            Self::Displacement => format!("*BOUNDARY\nNREST, 3, 3, {full:?}\nNCORNER, 3, 3, {full:?}\n"),
+            Self::Force => format!("*CLOAD\nNREST, 3, {full:?}\nNCORNER, 3, {full:?}\n"),
+        }
+    }
+}
 
 /// Nodes and bricks written so far.
 struct Mesh {
@@ -81,7 +110,7 @@ impl Block {
 }
 
 /// The deck; `behavior` is `*SURFACE BEHAVIOR` with its data lines, the unit of stress the MPa.
-pub fn deck(n: u32, behavior: &str) -> String {
+pub fn deck(n: u32, behavior: &str, drive: Drive) -> String {
     let mut mesh = Mesh { text: String::new(), elements: String::new(), nodes: 0, bricks: 0 };
     let m = (29 * n).div_ceil(20).max(4);
     let punch = mesh.block("PUNCH", n, (n / 2).max(2), [1.0, 1.0, 0.0], [1.0, 0.5]);
@@ -106,6 +135,7 @@ pub fn deck(n: u32, behavior: &str) -> String {
          *SURFACE INTERACTION, NAME=CONTACT\n{behavior}\n\
          *CONTACT PAIR, INTERACTION=CONTACT, TYPE=NODE TO SURFACE, SMALL SLIDING\nSSL, SMA\n\
          *BOUNDARY\nNBOT, 1, 3\nNREST, 1, 2\nNCORNER, 1, 2\n\
-         *STEP, INC=100000\n*STATIC\n1., 1.\n*BOUNDARY\nNREST, 3, 3, {DEPTH:?}\nNCORNER, 3, 3, {DEPTH:?}\n*END STEP\n"
+         *STEP, INC=100000\n*STATIC\n1., 1.\n{}*END STEP\n",
+        drive.lines()
     )
 }
