@@ -52,6 +52,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
             secondary: SurfaceId(0),
             primary: SurfaceId(1),
             interaction: InteractionId(0),
+            adjust: None,
             extension_zone: 0.1,
             place: Place::nowhere(),
         }],

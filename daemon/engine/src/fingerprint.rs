@@ -53,7 +53,7 @@ pub fn fingerprint(model: &Model) -> u64 {
     text(format_args!("{:?}{:?}{:?}", model.materials, model.interactions, model.amplitudes));
     for pair in &model.pairs {
         text(format_args!("{:?}{:?}{:?}{:?}", pair.name, pair.secondary, pair.primary, pair.interaction));
-        text(format_args!("{}", pair.extension_zone.to_bits()));
+        text(format_args!("{}{:?}", pair.extension_zone.to_bits(), pair.adjust));
     }
     let mut boundary = |b: &crate::model::Boundary| {
         text(format_args!("{:?}{:?}{}{}{:?}", b.region_name, b.nodes, b.direction, b.magnitude.to_bits(), b.amplitude))

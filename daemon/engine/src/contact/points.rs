@@ -4,6 +4,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::adjust;
 use super::search::{PrimarySurface, Query};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
@@ -53,7 +54,7 @@ impl ContactPoint {
 }
 
 /// Secondary nodes of a surface with area and outward normal (none for a node-based surface), by node.
-fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<(NodeId, f64, Option<[f64; 3]>)> {
+pub(super) fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<(NodeId, f64, Option<[f64; 3]>)> {
     match kind {
         SurfaceKind::Nodes(nodes) => nodes.iter().map(|&n| (n, node_area, None)).collect(),
         SurfaceKind::Faces(faces) => {
@@ -75,6 +76,12 @@ fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<(Node
             all
         }
     }
+}
+
+/// Unit vector.
+pub(super) fn direction(v: [f64; 3]) -> [f64; 3] {
+    let length = norm(v);
+    v.map(|x| x / length)
 }
 
 fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
@@ -106,18 +113,18 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         let (mut lost, mut deep) = (Vec::new(), Vec::new());
         for (node, area, vector) in secondaries {
             let label = mesh.node_labels[node.index()];
-            let outward = vector.map(|v| {
-                let length = norm(v);
-                v.map(|x| x / length)
-            });
+            let outward = vector.map(direction);
             let anchors = primary.anchors(mesh, Query { node, outward, extension_zone: pair.extension_zone });
             if anchors.is_empty() {
                 lost.push(label);
             }
             let several = anchors.len() > 1;
-            for anchor in anchors {
+            for (i, anchor) in anchors.into_iter().enumerate() {
                 let face_size = primary.size(anchor.face);
-                if anchor.clearance < -OVERLAP_MAX * face_size {
+                // ADJUST has moved the node; what is left is rounding, or a primary surface that moved behind it.
+                let adjusted = pair.adjust.is_some_and(|a| adjust::applies(mesh, a.region, node, &anchor, i == 0));
+                let clearance = if adjusted { 0.0 } else { anchor.clearance };
+                if clearance < -OVERLAP_MAX * face_size {
                     deep.push(label);
                 }
                 let shown = vector.filter(|_| several).map(|v| dot(v, anchor.normal).abs());
@@ -129,7 +136,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                     tangents: tangents(anchor.normal),
                     primary: primary.face_nodes(anchor.face),
                     weights: primary.weights(&anchor),
-                    clearance: anchor.clearance,
+                    clearance,
                     face_size,
                 });
             }

@@ -94,12 +94,30 @@ const DIFFERENCES: &[Difference] = &[
         "springs are made for points closer than c0 times the square root of their area",
         "as Abaqus: nothing is cut off",
     ),
+    departs(
+        "*CONTACT PAIR, TYPE=SURFACE TO SURFACE",
+        "constraints averaged over the secondary surface around each node",
+        "springs at the integration points of the secondary faces, which begin at touch",
+        "in both dialects node-to-surface, with a warning: the resultants agree, a uniform pressure is transmitted as one between matching meshes only, and laws that begin before touch do so",
+    ),
+    departs(
+        "*CONTACT PAIR, ADJUST",
+        "secondary nodes within the distance, or of the node set, are moved onto the primary surface without strain",
+        "the same; a node in a corner is moved once",
+        "in both dialects along the normal of the primary, in a corner against each side within the distance; the results show the moved coordinates",
+    ),
     departs("*CONTACT PAIR without TYPE", "node-to-surface", "the run stops", "node-to-surface"),
     departs(
         "*CONTACT PAIR, initial overclosure",
         "resolved in the first increment",
         "resolved over the first step",
         "as Abaqus",
+    ),
+    follows(
+        "*BOUNDARY before the first step",
+        "values are 0",
+        "other values are reached over the first step",
+        "as CalculiX, with a warning",
     ),
     follows(
         "*DLOAD, GRAV",

@@ -8,6 +8,8 @@ use super::keywords::{Keyword, Parameter as P};
 const WRITE_INTO_DECK: &str = "bring the lines in with *INCLUDE under the keyword";
 const FLAT_DECK: &str = "write the deck without parts and assemblies";
 const NO_DAMPING: &str = "damping has no effect in a static step";
+const NO_MORTAR: &str =
+    "mortar contact is not solved; write TYPE=NODE TO SURFACE to have forces act at the secondary nodes";
 const STATICS_ONLY: &str = "only static steps are solved";
 
 /// Keywords that describe the model.
@@ -328,23 +330,24 @@ pub const MODEL: &[Keyword] = &[
                 "TYPE",
                 &[
                     ("NODETOSURFACE", Read),
-                    ("SURFACETOSURFACE", Refused("write TYPE=NODE TO SURFACE if that is meant")),
-                    ("MORTAR", Refused("write TYPE=NODE TO SURFACE if that is meant")),
-                    ("LINMORTAR", Refused("write TYPE=NODE TO SURFACE if that is meant")),
-                    ("PGLINMORTAR", Refused("write TYPE=NODE TO SURFACE if that is meant")),
-                    ("MASSLESS", Refused("write TYPE=NODE TO SURFACE if that is meant")),
+                    ("SURFACETOSURFACE", Read),
+                    ("MORTAR", Refused(NO_MORTAR)),
+                    ("LINMORTAR", Refused(NO_MORTAR)),
+                    ("PGLINMORTAR", Refused(NO_MORTAR)),
+                    ("PGMORTAR", Refused(NO_MORTAR)),
+                    ("MASSLESS", Refused("it belongs to explicit dynamics; in statics write TYPE=NODE TO SURFACE")),
                 ],
             ),
             P::flag("SMALL SLIDING"),
             P::silent("NO THICKNESS"),
             P::silent("CPSET"),
             P::value("EXTENSION ZONE"),
+            P::value("ADJUST"),
             P::ignored("HCRIT", "a large overclosure does not cut the increment back"),
             P::ignored("SMOOTH", "sliding is small; the primary surface is used as meshed"),
             P::ignored("SLIDE DISTANCE", "sliding is small"),
             P::ignored("TRACKING", "sliding is small"),
             P::ignored("SUPPLEMENTARY CONSTRAINTS", "node-to-surface contact has one point per secondary node"),
-            P::refused("ADJUST", "move the secondary nodes in the mesh"),
             P::refused("TIED", "tied contact is not solved"),
             P::refused("GEOMETRIC CORRECTION", "the primary surface is used as meshed"),
             P::refused("MINIMUM DISTANCE", "the distances of the mesh are used"),

@@ -73,8 +73,12 @@ fn describe_pair(model: &Model, pair: &ContactPair) -> String {
         NormalBehavior::Softened(PressureOverclosure::Exponential(_)) => "exponential",
         NormalBehavior::Softened(PressureOverclosure::CalculixExponential(_)) => "exponential of CalculiX",
     };
+    let adjusted = match pair.adjust {
+        Some(adjust) => format!("; ADJUST moved {} nodes by up to {:.4e}", adjust.moved, adjust.distance_max),
+        None => String::new(),
+    };
     format!(
-        "{}: secondary {}; primary {}; {law}",
+        "{}: secondary {}; primary {}; {law}{adjusted}",
         pair.name,
         describe_surface(model, pair.secondary),
         describe_surface(model, pair.primary)

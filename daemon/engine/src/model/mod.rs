@@ -98,8 +98,30 @@ pub struct ContactPair {
     pub interaction: InteractionId,
     /// Part of a face's size by which a secondary node may hang over the edge of the primary surface; 0.1 unless given.
     pub extension_zone: f64,
+    /// `ADJUST`: secondary nodes that lie on the primary surface at the start. The coordinates of the mesh are the adjusted ones.
+    pub adjust: Option<Adjust>,
     /// Where the pair was defined, for diagnostics.
     pub place: crate::diagnostic::Place,
+}
+
+/// `ADJUST` of a contact pair: a strain-free change of the geometry before the analysis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adjust {
+    /// Nodes that are adjusted.
+    pub region: AdjustRegion,
+    /// How many nodes the reader has moved.
+    pub moved: u32,
+    /// The largest move \[length\].
+    pub distance_max: f64,
+}
+
+/// Nodes that `ADJUST` names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AdjustRegion {
+    /// Nodes with a clearance up to this \[length\], and all that overlap; not negative.
+    Within(f64),
+    /// Nodes of a set, wherever they are.
+    Set(SetId),
 }
 
 /// `*EQUATION`: Σ coefficient · displacement = 0. The first term is the dependent one: its direction is eliminated.

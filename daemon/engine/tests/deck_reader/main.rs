@@ -1,5 +1,6 @@
 //! The deck reader through its public face.
 
+mod adjust;
 mod base;
 mod connectors;
 mod damage;

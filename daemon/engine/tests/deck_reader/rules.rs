@@ -306,10 +306,9 @@ fn contact_pairs_are_checked() {
     warns(&with(", SMALL SLIDING", ", SMALL SLIDING, HCRIT=0.1"), "*CONTACT PAIR", "HCRIT is ignored");
     assert!(read(&with(", SMALL SLIDING", ", SMALL SLIDING, TYPE=NODE TO SURFACE")).diagnostics.is_empty());
     let cases = [
-        (", SMALL SLIDING", ", TYPE=SURFACE TO SURFACE", "TYPE=SURFACE TO SURFACE is not supported"),
         (", SMALL SLIDING", ", TYPE=MORTAR", "TYPE=MORTAR is not supported"),
         (", SMALL SLIDING", ", TIED", "TIED is not supported"),
-        (", SMALL SLIDING", ", ADJUST=0.1", "ADJUST is not supported"),
+        (", SMALL SLIDING", ", WEIGHT=0.1", "WEIGHT is not supported"),
         ("INTERACTION=SI,", "INTERACTION=S1,", "no surface interaction S1"),
         ("INTERACTION=SI, ", "", "parameter INTERACTION is missing"),
         ("SECOND, FIRST", "SECOND, THIRD", "no surface THIRD"),

@@ -283,6 +283,15 @@ impl Builder<'_> {
                     "add SMALL SLIDING to say so; the run stops when a point slides beyond half a face",
                 );
             }
+            if card.parameters.word("TYPE") == "SURFACETOSURFACE" {
+                let message = "surface-to-surface contact is solved node-to-surface: forces act at the secondary nodes, and where the meshes do not match a uniform pressure is not transmitted as one";
+                self.report.warning(
+                    card.at,
+                    PAIR,
+                    message,
+                    "let the finer mesh be the secondary one; its resultant is right",
+                );
+            }
             if card.first_line().is_none() {
                 self.report.error(
                     card.at,
@@ -292,6 +301,7 @@ impl Builder<'_> {
                 );
             }
             let extension_zone = self.extension_zone(card.parameters.value("EXTENSION ZONE"), card.at);
+            let adjust = self.adjust_parameter(card);
             for line in card.lines().iter() {
                 let row = line.row(PAIR);
                 let (secondary, primary) =
@@ -306,13 +316,14 @@ impl Builder<'_> {
                 }
                 let (Some(secondary), Some(primary)) = (secondary, primary) else { continue };
                 if self.pair_is_sound(&row, secondary, primary)
-                    && let (Some(interaction), Some(extension_zone), false) = (interaction, extension_zone, card.faulty)
+                    && let (Some(interaction), Some(extension_zone), Ok(adjust), false) =
+                        (interaction, extension_zone, adjust, card.faulty)
                 {
                     let place = self.map.place(row.at);
                     let interaction = InteractionId(interaction);
                     let name = self.pair_name(secondary, primary);
                     self.push_pair(
-                        ContactPair { name, secondary, primary, interaction, extension_zone, place },
+                        ContactPair { name, secondary, primary, interaction, extension_zone, adjust, place },
                         row.at,
                     );
                 }
@@ -397,7 +408,7 @@ impl Builder<'_> {
     }
 
     /// Nodes of a surface, ascending.
-    fn surface_nodes(&self, surface: SurfaceId) -> Vec<NodeId> {
+    pub(super) fn surface_nodes(&self, surface: SurfaceId) -> Vec<NodeId> {
         let mesh = &self.model.mesh;
         let mut nodes = match &mesh.surfaces[surface.index()].kind {
             SurfaceKind::Nodes(nodes) => nodes.clone(),
@@ -438,6 +449,7 @@ impl Builder<'_> {
             return;
         }
         self.model.pairs.push(pair);
+        self.pair_at.push(at);
     }
 }
 

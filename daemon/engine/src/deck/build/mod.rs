@@ -1,5 +1,6 @@
 //! Second pass: cards to a model. References are followed in any direction, so the order of definitions does not matter.
 
+mod adjust;
 mod budget;
 mod contact;
 mod equations;
@@ -50,6 +51,10 @@ struct Builder<'r> {
     equation_at: Vec<At>,
     /// Surfaces of the contact pairs.
     pairs: FxHashSet<(SurfaceId, SurfaceId)>,
+    /// Values before the first step, which CalculiX reaches over it.
+    early_boundaries: Vec<(At, Boundary)>,
+    /// Lines of the contact pairs.
+    pair_at: Vec<At>,
     /// Lines of the boundaries of each step.
     step_lines: Vec<Vec<At>>,
     /// Lines of the loads of each step.
@@ -80,6 +85,8 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         budget: Budget::of(entities),
         equation_at: Vec::new(),
         pairs: FxHashSet::default(),
+        early_boundaries: Vec::new(),
+        pair_at: Vec::new(),
         step_lines: Vec::new(),
         load_lines: Vec::new(),
     };
@@ -103,6 +110,9 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     if !layout.has_refused_keywords() {
         builder.check_unused();
     }
+    if !builder.report.has_errors() {
+        builder.adjust_nodes();
+    }
     builder.model
 }
 
@@ -112,7 +122,13 @@ impl Builder<'_> {
         // Lines of single nodes, which generators write by the thousand, are joined per direction.
         let mut joined: [Option<usize>; 3] = [None; 3];
         for card in layout.model.iter().filter(|card| card.keyword.name == "*BOUNDARY") {
-            self.boundary_card(card, Part::Model, |_, boundary| {
+            let mut early = Vec::new();
+            self.boundary_card(card, Part::Model, |at, boundary| {
+                if boundary.magnitude != 0.0 {
+                    join_early(&mut early, at, boundary);
+                    return;
+                }
+                let boundary = Boundary { amplitude: None, ..boundary };
                 let slot = &mut joined[boundary.direction as usize];
                 match (&boundary.region, &*slot) {
                     (Region::Label(_), Some(first)) => boundaries[*first].nodes.extend(boundary.nodes),
@@ -123,6 +139,11 @@ impl Builder<'_> {
                     _ => boundaries.push(boundary),
                 }
             });
+            for (_, boundary) in &mut early {
+                boundary.nodes.sort_unstable();
+                boundary.nodes.dedup();
+            }
+            self.early_boundaries.append(&mut early);
         }
         for boundary in joined.into_iter().flatten() {
             let nodes = &mut boundaries[boundary].nodes;
@@ -178,5 +199,17 @@ impl Builder<'_> {
                 "they have no stiffness; remove them if they serve no purpose",
             );
         }
+    }
+}
+
+/// Adds a value before the first step; lines of single nodes with one direction and value that follow each other are joined.
+fn join_early(early: &mut Vec<(At, Boundary)>, at: At, boundary: Boundary) {
+    let alike = |other: &Boundary| {
+        matches!((&other.region, &boundary.region), (Region::Label(_), Region::Label(_)))
+            && (other.direction, other.magnitude) == (boundary.direction, boundary.magnitude)
+    };
+    match early.iter_mut().rev().take(3).find(|(_, other)| alike(other)) {
+        Some((_, first)) => first.nodes.extend(boundary.nodes),
+        None => early.push((at, boundary)),
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::model::{Boundary, Model, NodeId};
+use crate::model::{Boundary, Dialect, Model, NodeId};
 
 use super::super::card::Card;
 use super::super::data::Row;
@@ -40,12 +40,14 @@ impl Builder<'_> {
     /// Hands over the lines of a `*BOUNDARY`, one boundary per direction, each with its line.
     pub(super) fn boundary_card(&mut self, card: &Card, part: Part, mut push: impl FnMut(At, Boundary)) {
         let Ok(mut amplitude) = self.amplitude(card) else { return };
-        if part == Part::Model && amplitude.take().is_some() {
+        let early_values = part == Part::Model && self.model.dialect == Dialect::Calculix;
+        if part == Part::Model && !early_values && amplitude.take().is_some() {
             self.report.warning(card.at, BOUNDARY, "AMPLITUDE is ignored: values before the first step are 0", "");
         }
         if card.faulty {
             return;
         }
+        let mut warned = false;
         for line in card.lines().iter() {
             let row = line.row(BOUNDARY);
             row.at_most(4, self.report);
@@ -53,7 +55,11 @@ impl Builder<'_> {
             let directions = self.directions(&row);
             let magnitude = row.real(3, "magnitude", Some(0.0), self.report);
             let (Some(region), Some(directions), Some(magnitude)) = (region, directions, magnitude) else { continue };
-            if part == Part::Model && magnitude != 0.0 {
+            if early_values && magnitude != 0.0 && !std::mem::replace(&mut warned, true) {
+                let message = format!("value {magnitude} before the first step: it is reached over the first step");
+                self.report.warning(row.at, BOUNDARY, message, "write values that are not 0 into the step");
+            }
+            if part == Part::Model && !early_values && magnitude != 0.0 {
                 let message = format!("value {magnitude} before the first step");
                 self.report.error(
                     row.at,

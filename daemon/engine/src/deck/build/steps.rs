@@ -51,8 +51,8 @@ impl Builder<'_> {
             }
             let increments_max = increments_max(opening, self.report);
             let procedure = self.procedure(cards, increments_max);
-            let mut boundaries = Vec::new();
-            let mut boundary_lines = Vec::new();
+            let (mut boundary_lines, mut boundaries): (Vec<_>, Vec<_>) =
+                std::mem::take(&mut self.early_boundaries).into_iter().unzip();
             for card in cards.cards.iter().filter(|card| card.keyword.name == "*BOUNDARY") {
                 self.boundary_card(card, Part::Step, |at, boundary| {
                     boundary_lines.push(at);

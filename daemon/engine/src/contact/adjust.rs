@@ -1,0 +1,117 @@
+//! ADJUST of a contact pair: secondary nodes are moved onto the primary surface before anything is computed.
+//!
+//! As in Abaqus and CalculiX the coordinates change, along the normal of the primary, so the moved nodes carry neither strain nor
+//! stress. A node in a corner is moved against each surface within the distance, by turns.
+
+use super::points::secondary_nodes;
+use super::search::{Anchor, PrimarySurface, Query};
+use crate::model::{AdjustRegion, ContactPair, Mesh, NodeId, SurfaceKind};
+
+/// Turns of a node in a corner: at right angles two are enough, at 30 degrees each leaves three quarters of the rest.
+const TURNS_MAX: usize = 100;
+/// Part of a face within which a node is on the surface: above rounding, far below what a mesh resolves.
+const ON_SURFACE: f64 = 1e-12;
+
+/// Whether ADJUST moves a node onto an anchor, the nearest of the node or a further one.
+pub fn applies(mesh: &Mesh, region: AdjustRegion, node: NodeId, anchor: &Anchor, nearest: bool) -> bool {
+    match region {
+        AdjustRegion::Within(distance) => anchor.clearance <= distance,
+        AdjustRegion::Set(set) => nearest && mesh.node_sets[set.index()].nodes.binary_search(&node).is_ok(),
+    }
+}
+
+/// Moves the nodes of a pair; returns those that moved, ascending, with the distance [length].
+pub fn adjust(mesh: &mut Mesh, pair: &ContactPair, region: AdjustRegion) -> Vec<(NodeId, f64)> {
+    let SurfaceKind::Faces(faces) = &mesh.surfaces[pair.primary.index()].kind else {
+        unreachable!("the deck reader admits element-based primary surfaces only")
+    };
+    let primary = PrimarySurface::new(mesh, faces);
+    let mut moved = Vec::new();
+    // Areas are not needed.
+    for (node, _, vector) in secondary_nodes(mesh, &mesh.surfaces[pair.secondary.index()].kind, 1.0) {
+        let query = Query { node, outward: vector.map(super::points::direction), extension_zone: pair.extension_zone };
+        let start = mesh.nodes[node.index()];
+        for _ in 0..TURNS_MAX {
+            let anchors = primary.anchors(mesh, query);
+            let wanted = anchors.iter().enumerate().filter(|(i, a)| applies(mesh, region, node, a, *i == 0));
+            let Some((_, farthest)) = wanted.max_by(|a, b| a.1.clearance.abs().total_cmp(&b.1.clearance.abs())) else {
+                break;
+            };
+            if farthest.clearance.abs() <= ON_SURFACE * primary.size(farthest.face) {
+                break;
+            }
+            for (x, n) in mesh.nodes[node.index()].iter_mut().zip(farthest.normal) {
+                *x -= farthest.clearance * n;
+            }
+        }
+        let distance = mesh.nodes[node.index()].iter().zip(start).map(|(x, s)| (x - s).powi(2)).sum::<f64>().sqrt();
+        if distance > 0.0 {
+            moved.push((node, distance));
+        }
+    }
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::points;
+    use crate::deck::read_text;
+    use crate::model::Dialect;
+
+    /// A block with a sloping top, z = 1 + x / 4, and three nodes of a surface over or under it.
+    const DECK: &str = "\
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 0., 1.
+6, 1., 0., 1.25
+7, 1., 1., 1.25
+8, 0., 1., 1.
+11, 0.3, 0.3, 1.1
+12, 0.6, 0.6, 1.1
+13, 0.5, 0.5, 1.6
+*ELEMENT, TYPE=C3D8, ELSET=BLOCK
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*MATERIAL, NAME=M
+*ELASTIC
+200., 0.3
+*SOLID SECTION, ELSET=BLOCK, MATERIAL=M
+*SURFACE, NAME=TOP
+BLOCK, S2
+*SURFACE, NAME=POINTS, TYPE=NODE
+11
+12
+13
+*SURFACE INTERACTION, NAME=I
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+1.
+*CONTACT PAIR, INTERACTION=I, SMALL SLIDING, ADJUST=0.1
+POINTS, TOP
+*BOUNDARY
+1, 1, 3
+*STEP
+*STATIC
+*END STEP
+";
+
+    #[test]
+    fn adjusted_points_are_closed_to_the_bit_and_others_keep_their_clearance() {
+        let reading = read_text(DECK, Dialect::Abaqus);
+        let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
+        let nodes = &model.mesh.nodes;
+        let normal = [-0.25, 0.0, 1.0].map(|x| x / 1.0625f64.sqrt());
+        // Clearance before: (z - 1 - x / 4) times the normal's share of z.
+        for (node, start) in [(8, [0.3, 0.3, 1.1]), (9, [0.6, 0.6, 1.1])] {
+            let clearance = (start[2] - 1.0 - start[0] / 4.0) * normal[2];
+            for i in 0..3 {
+                assert!((nodes[node][i] - (start[i] - clearance * normal[i])).abs() < 1e-14, "{:?}", nodes[node]);
+            }
+        }
+        assert_eq!(nodes[10], [0.5, 0.5, 1.6]);
+        let (points, _) = points::find(&model);
+        assert_eq!(points.iter().map(|p| p.clearance).take(2).collect::<Vec<_>>(), [0.0, 0.0]);
+        assert!((points[2].clearance - 0.475 * normal[2]).abs() < 1e-12);
+    }
+}
