@@ -51,17 +51,64 @@ impl Blocks {
         self.starts[self.len()]
     }
 
+    /// Numbers in all blocks.
+    pub fn values(&self) -> usize {
+        self.value_starts[self.len()]
+    }
+
+    /// Columns of a supernode.
+    pub fn width(&self, s: usize) -> usize {
+        self.starts[s + 1] - self.starts[s]
+    }
+
+    /// Length of the columns of a supernode.
+    pub fn height(&self, s: usize) -> usize {
+        self.width(s) + self.pattern(s).len()
+    }
+
+    /// Rows below a supernode's own.
+    pub fn pattern(&self, s: usize) -> &[u32] {
+        &self.pattern[self.pattern_starts[s]..self.pattern_starts[s + 1]]
+    }
+
+    /// Where the column of an unknown of a supernode begins in the values.
+    pub fn column_at(&self, s: usize, unknown: u32) -> usize {
+        self.value_starts[s] + (unknown as usize - self.starts[s]) * self.height(s)
+    }
+
+    /// The same structure with supernodes cut into equal parts of at most `width_max` columns: the unused triangles on
+    /// their diagonals are smaller then.
+    pub fn cut(&self, width_max: usize) -> Self {
+        let mut out = Self { starts: vec![0], pattern_starts: vec![0], pattern: Vec::new(), value_starts: vec![0] };
+        for s in 0..self.len() {
+            let (start, end, width) = (self.starts[s], self.starts[s + 1], self.width(s));
+            let parts = width.div_ceil(width_max);
+            let mut begin = start;
+            for part in 1..=parts {
+                let next = start + width * part / parts;
+                let values = out.values() + (next - begin) * (end - begin + self.pattern(s).len());
+                out.pattern.extend(next as u32..end as u32);
+                out.pattern.extend(self.pattern(s));
+                out.starts.push(next);
+                out.pattern_starts.push(out.pattern.len());
+                out.value_starts.push(values);
+                begin = next;
+            }
+        }
+        out
+    }
+
     /// Length of the longest pattern.
     pub fn pattern_max(&self) -> usize {
-        self.pattern_starts.windows(2).map(|w| w[1] - w[0]).max().unwrap_or(0)
+        (0..self.len()).map(|s| self.pattern(s).len()).max().unwrap_or(0)
     }
 
     /// A supernode with its values.
     pub fn block<'a>(&'a self, values: &'a [f64], s: usize) -> Block<'a> {
         Block {
             start: self.starts[s],
-            width: self.starts[s + 1] - self.starts[s],
-            pattern: &self.pattern[self.pattern_starts[s]..self.pattern_starts[s + 1]],
+            width: self.width(s),
+            pattern: self.pattern(s),
             values: &values[self.value_starts[s]..self.value_starts[s + 1]],
         }
     }

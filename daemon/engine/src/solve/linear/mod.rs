@@ -4,6 +4,7 @@
 mod blocks;
 mod dense;
 mod factor;
+mod numeric;
 mod substitution;
 mod symbolic;
 

@@ -15,9 +15,15 @@ pub struct FactorSize {
     pub values: usize,
 }
 
+/// When supernodes are merged although their patterns differ: up to so many columns, if at most this part of the
+/// numbers are zeros. Wide ones gain nothing by it.
+const RELAXATION: [(usize, f64); 4] = [(4, 1.0), (16, 0.8), (48, 0.1), (usize::MAX, 0.02)];
+/// Columns of the widest block: the unused triangle on its diagonal is small then against the numbers below.
+const WIDTH_MAX: usize = 512;
+
 /// Structure of L.
 pub struct Symbolic {
-    pub(super) inner: supernodal::SymbolicSupernodalCholesky<usize>,
+    pub(super) blocks: Blocks,
 }
 
 impl Symbolic {
@@ -53,25 +59,20 @@ impl Symbolic {
             etree,
             &counts,
             stack,
-            SymbolicSupernodalParams::default(),
+            SymbolicSupernodalParams { relax: Some(&RELAXATION) },
         )
         .expect("the index type is as wide as memory");
-        Self { inner }
+        let blocks = Blocks {
+            starts: std::iter::once(0).chain(inner.supernode_end().iter().copied()).collect(),
+            pattern_starts: inner.col_ptr_for_row_idx().to_vec(),
+            pattern: inner.row_idx().iter().map(|&row| row as u32).collect(),
+            value_starts: inner.col_ptr_for_val().to_vec(),
+        };
+        Self { blocks: blocks.cut(WIDTH_MAX) }
     }
 
     /// Numbers that L will hold.
     pub fn size(&self) -> FactorSize {
-        FactorSize { values: self.inner.len_val() }
-    }
-
-    /// Where the blocks of L are.
-    pub(super) fn blocks(&self) -> Blocks {
-        let ends = self.inner.supernode_end();
-        Blocks {
-            starts: std::iter::once(0).chain(ends.iter().copied()).collect(),
-            pattern_starts: self.inner.col_ptr_for_row_idx().to_vec(),
-            pattern: self.inner.row_idx().iter().map(|&row| row as u32).collect(),
-            value_starts: self.inner.col_ptr_for_val().to_vec(),
-        }
+        FactorSize { values: self.blocks.values() }
     }
 }

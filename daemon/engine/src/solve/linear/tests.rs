@@ -221,3 +221,33 @@ fn sizes_agree_before_and_after_factoring() {
         assert!(before.values >= sample.lower.values.len());
     }
 }
+
+#[test]
+fn supernodes_in_parts_give_the_same_factor() {
+    let mut random = Random(6);
+    // Dense enough for supernodes of many columns, with a sparse part before them.
+    let sample = Sample::springs(300, 2500, &mut random);
+    let n = sample.len();
+    let whole = Symbolic::analyse(&sample.lower).blocks;
+    let rhs = random.matrix(n, 2);
+    let mut expected = rhs.clone();
+    sample.factor().solve(&mut expected);
+    for width_max in [1, 2, 3, 7, 30, 64, 200] {
+        let blocks = whole.cut(width_max);
+        assert!((0..blocks.len()).all(|s| blocks.width(s) <= width_max));
+        assert_eq!(blocks.unknowns(), n);
+        assert!(width_max >= 30 || blocks.values() < whole.values());
+        let mut values = vec![0.0; blocks.values()];
+        numeric::factor(&sample.lower, &blocks, &mut values).expect("positive definite");
+        let factor = Factor { blocks, values };
+        let mut x = rhs.clone();
+        factor.solve(&mut x);
+        assert_close(&x.values, &expected.values, 1e-12, &format!("width {width_max}"));
+        assert_close(
+            &factor.trailing(n / 2).gram().values,
+            &sample.factor().trailing(n / 2).gram().values,
+            1e-12,
+            "trailing",
+        );
+    }
+}
