@@ -35,6 +35,15 @@ def write_punch(folder, law, increments=5, *, cards="", tail=SECOND_STEP):
     return deck
 
 
+def push(deck):
+    """Forces on the top in place of displacements: contact alone holds the punch."""
+    text = deck.read_text()
+    pushed = text.replace("*BOUNDARY\nNTOP, 3, 3, -0.005\n", "*CLOAD\nNTOP, 3, -30.\n")
+    pushed = pushed.replace("*BOUNDARY\nNTOP, 3, 3, -0.001\n", "*CLOAD\nNTOP, 3, -5.\n")
+    assert pushed.count("*CLOAD") == 2
+    deck.write_text(pushed)
+
+
 def snapshots(result):
     """Snapshots that JOB.json lists; all of them are there."""
     listed = result.summary()["snapshots"]
@@ -63,9 +72,12 @@ def insist_on_the_rest(whole, rest, origin):
     assert frames(rest) == late
 
 
+@pytest.mark.parametrize("held", [True, False], ids=["held", "floating"])
 @pytest.mark.parametrize("law", generate_deck.LAWS)
-def test_every_snapshot_leads_to_the_same_end(tmp_path, law):
+def test_every_snapshot_leads_to_the_same_end(tmp_path, law, held):
     deck = write_punch(tmp_path, law)
+    if not held:
+        push(deck)
     whole = support.run(deck, tmp_path / "whole", "--snapshots", 2)
     listed = snapshots(whole)
     # Both ends of steps are there, and so is every second increment.
