@@ -27,7 +27,7 @@ impl Simulation {
                 }
             }
         }
-        for body in &prepared.bodies {
+        for body in prepared.bodies.iter() {
             let unknowns = body.recover(coefficients, forces);
             for (node, directions) in body.nodes.iter().zip(&body.unknowns) {
                 for (u, &unknown) in displacement[node.index()].iter_mut().zip(directions) {

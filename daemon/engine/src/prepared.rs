@@ -1,5 +1,7 @@
 //! Preparation: everything that can be computed before the first increment.
 
+use std::sync::Arc;
+
 use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::element::{Elasticity, connector};
@@ -10,18 +12,21 @@ use crate::outputs::{Outputs, Source};
 use crate::port::PortList;
 use crate::port_config::PortConfig;
 use crate::procedure::loading::Loading;
-use crate::simulation::{ContactPointInfo, PathChoice, Phase, PrepareOptions};
+use crate::simulation::{ContactPointInfo, Phase, PrepareOptions};
 use crate::solve::assembly::{coordinates, elasticities};
-use crate::solve::body::{Body, BodyContribution, NoStiffness};
+use crate::solve::bodies::{choose_path, prepare_bodies};
+use crate::solve::body::{Body, BodyError};
+use crate::solve::budget::{Budget, Shortage};
 use crate::solve::columns::Column;
 use crate::solve::condensed::Condensed;
 use crate::solve::constraints::Constraints;
-use crate::solve::contact::{ContactSystem, PointBehavior, initial_springs};
+use crate::solve::contact::{ContactSystem, PointBehavior, Structure, initial_springs};
 use crate::solve::context::Context;
 use crate::solve::floating::Floating;
 use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
 use crate::solve::parts::Sample;
+use crate::solve::sparse::SparseStructure;
 
 /// Everything that can be computed before the first increment. Immutable; shared by sessions and instances.
 pub struct PreparedModel {
@@ -36,7 +41,7 @@ pub struct PreparedModel {
     pub(crate) motions: Vec<Motions>,
     pub(crate) floating: Floating,
     pub(crate) elasticities: Vec<Elasticity>,
-    pub(crate) bodies: Vec<Body>,
+    pub(crate) bodies: Arc<Vec<Body>>,
     /// Elements with a prescribed direction: they carry the reactions.
     pub(crate) support_elements: Vec<u32>,
     pub(crate) condensed: Condensed,
@@ -60,14 +65,6 @@ impl PreparedModel {
         options: &PrepareOptions,
         announce: &mut dyn FnMut(Phase),
     ) -> Result<Self, Vec<Diagnostic>> {
-        if options.path == PathChoice::Sparse {
-            return Err(vec![Diagnostic::error(
-                Place::nowhere(),
-                "",
-                "the sparse path is not available in this version",
-                "choose the path auto or dense",
-            )]);
-        }
         announce(Phase::Search);
         let Examined { constraints, points, bodies, motions, floating, loading, warnings } =
             examination::examine(&model)?;
@@ -77,24 +74,32 @@ impl PreparedModel {
         let outputs = Outputs::new(&model, &constraints, &mut columns);
         constraints.extend(&mut columns[real_columns..]);
         let elasticities = elasticities(&model);
+        let budget = Budget::new(options.memory_limit);
         let context = Context {
             model: &model,
+            budget: &budget,
             elasticities: &elasticities,
             constraints: &constraints,
             local: &bodies.local,
             points: &points,
             columns: &columns,
         };
-        let results = prepare_bodies(&context, &bodies, &motions, options.threads, announce);
+        let (condense, coupled) = choose_path(&context, options.path, &bodies, &motions, &floating);
+        if let Some(coupled) = &coupled
+            && let Err(shortage) = budget.take(coupled.numbers())
+        {
+            return Err(vec![too_large(&shortage, "the sparse system")]);
+        }
+        let results = prepare_bodies(&context, &bodies, &motions, options.threads, condense, announce);
         announce(Phase::Condense);
         let (mut prepared, mut contributions) = (Vec::new(), Vec::new());
-        for result in results {
+        for (b, result) in results.into_iter().enumerate() {
             match result {
                 Ok((body, contribution)) => {
                     prepared.push(body);
                     contributions.push(contribution);
                 }
-                Err(NoStiffness { node, direction }) => errors.push(Diagnostic::error(
+                Err(BodyError::NoStiffness { node, direction }) => errors.push(Diagnostic::error(
                     Place::nowhere(),
                     "",
                     format!(
@@ -104,21 +109,34 @@ impl PreparedModel {
                     ),
                     "connect it by whole faces, or hold it by *BOUNDARY",
                 )),
+                Err(BodyError::Memory(shortage)) => {
+                    let name = examination::body_name(&model, &bodies.nodes[b], &bodies.elements[b]);
+                    errors.push(too_large(&shortage, &name));
+                }
             }
         }
         if !errors.is_empty() {
             return Err(errors);
         }
         let loads = floating.loads(&columns, &bodies, &motions);
-        let (condensed, compliance) = Condensed::new(&context, &bodies, &prepared, &contributions, &floating, loads);
+        let (condensed, compliance) =
+            Condensed::new(&context, &bodies, &prepared, &contributions, &floating, loads, condense);
         for body in &mut prepared {
             body.keep_columns(real_columns);
         }
+        let prepared = Arc::new(prepared);
+        let structure = match coupled {
+            None => Structure::Dense(compliance),
+            Some(coupled) => {
+                let own = coupled.own_compliances();
+                Structure::Sparse(Box::new(SparseStructure { bodies: prepared.clone(), coupled, own }))
+            }
+        };
         let contact = ContactSystem {
-            springs: initial_springs(&compliance, &floating.gaps),
+            springs: initial_springs(&structure, &floating.gaps),
             gap_motions: floating.gaps.clone(),
             resisted: floating.resisted.clone(),
-            compliance,
+            structure,
             points: points
                 .iter()
                 .map(|p| PointBehavior { area: p.area, behavior: model.pairs[p.pair as usize].interaction.index() })
@@ -236,64 +254,14 @@ impl PreparedModel {
     }
 }
 
-type BodyResult = Result<(Body, BodyContribution), NoStiffness>;
-
-/// Prepares every body, several at a time if allowed. The results do not depend on how many.
-fn prepare_bodies(
-    context: &Context<'_>,
-    bodies: &Bodies,
-    motions: &[Motions],
-    threads: usize,
-    announce: &mut dyn FnMut(Phase),
-) -> Vec<BodyResult> {
-    let count = bodies.nodes.len();
-    let points_of = |body: usize| -> Vec<u32> {
-        let touches = |p: &ContactPoint| {
-            let mut any = false;
-            p.row([1.0; 3], |node, direction, value| {
-                if bodies.of_node[node.index()] == body as u32 {
-                    context
-                        .constraints
-                        .expand(node, direction, value, |n, d, _| any |= context.constraints.is_free(n, d));
-                }
-            });
-            any
-        };
-        (0..context.points.len() as u32).filter(|&i| touches(&context.points[i as usize])).collect()
-    };
-    if threads <= 1 || count <= 1 {
-        return (0..count)
-            .map(|b| Body::prepare(context, &bodies.nodes[b], &bodies.elements[b], &motions[b], points_of(b), announce))
-            .collect();
-    }
-    announce(Phase::Numeric);
-    let next = std::sync::atomic::AtomicUsize::new(0);
-    let results: Vec<std::sync::Mutex<Option<BodyResult>>> = (0..count).map(|_| std::sync::Mutex::new(None)).collect();
-    std::thread::scope(|scope| {
-        for _ in 0..threads.min(count) {
-            scope.spawn(|| {
-                loop {
-                    let b = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                    if b >= count {
-                        break;
-                    }
-                    let result = Body::prepare(
-                        context,
-                        &bodies.nodes[b],
-                        &bodies.elements[b],
-                        &motions[b],
-                        points_of(b),
-                        &mut |_| {},
-                    );
-                    *results[b].lock().expect("no other thread writes this slot") = Some(result);
-                }
-            });
-        }
-    });
-    results
-        .into_iter()
-        .map(|slot| slot.into_inner().expect("a panic has ended the scope before").expect("every body was taken once"))
-        .collect()
+/// A model that does not fit into memory.
+fn too_large(shortage: &Shortage, what: &str) -> Diagnostic {
+    Diagnostic::error(
+        Place::nowhere(),
+        "",
+        shortage.describe(what),
+        "use a coarser mesh away from contact, a machine with more memory, or another path (dense needs the square of the contact points)",
+    )
 }
 
 /// Whether equations and springs let everything move together in a direction.

@@ -157,6 +157,23 @@ pub struct IncrementReport {
     pub status_changes: Vec<StatusChange>,
 }
 
+/// An increment that was tried in vain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutbackReport {
+    /// Step number, from 1.
+    pub step: u32,
+    /// Increment that was tried, from 1.
+    pub increment: u32,
+    /// Attempt that failed, from 1.
+    pub attempt: u32,
+    /// Its size \[time\].
+    pub increment_size: f64,
+    /// Size of the next attempt \[time\].
+    pub next_size: f64,
+    /// Why it failed, in words.
+    pub reason: String,
+}
+
 /// A field: row-major values, one row per label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {

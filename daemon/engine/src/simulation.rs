@@ -6,7 +6,8 @@ pub use crate::prepared::PreparedModel;
 pub use crate::request::*;
 pub use crate::results::*;
 
-use crate::model::Procedure;
+use crate::fingerprint::fingerprint;
+use crate::model::{Model, Procedure};
 use crate::procedure::loading::Course;
 use crate::solve::contact::ContactSolver;
 use crate::state::State;
@@ -15,6 +16,9 @@ use crate::state::State;
 pub trait Watch {
     /// An increment has converged; results may be read from `simulation`.
     fn increment(&mut self, simulation: &Simulation, report: &IncrementReport);
+
+    /// An increment found no solution and is tried again with a smaller size; `simulation` stands at its start.
+    fn cutback(&mut self, _simulation: &Simulation, _report: &CutbackReport) {}
 
     /// True stops the advance before the next increment.
     fn cancelled(&self) -> bool {
@@ -68,6 +72,11 @@ pub(crate) struct Derived {
     pub points: Vec<ContactPointResult>,
     pub pairs: Vec<PairTotals>,
     pub energies: Energies,
+}
+
+/// Whether bytes are a checkpoint of a model, found out without preparing it.
+pub fn check_checkpoint(model: &Model, bytes: &[u8]) -> Result<(), RestoreError> {
+    State::check(bytes, fingerprint(model)).map(|_| ())
 }
 
 impl Simulation {

@@ -87,6 +87,15 @@ impl State {
     /// Reads a checkpoint and checks that it has the shape of `like`.
     pub fn decode(bytes: &[u8], fingerprint: u64, like: &State, steps: usize) -> Result<Self, RestoreError> {
         let damaged = |detail: &str| RestoreError::Damaged { detail: detail.into() };
+        let payload = Self::check(bytes, fingerprint)?;
+        let (state, rest) =
+            postcard::take_from_bytes::<State>(payload).map_err(|_| damaged("the payload cannot be decoded"))?;
+        Self::check_shape(state, rest, like, steps)
+    }
+
+    /// Payload of a checkpoint of a model; refuses other files and damaged ones.
+    pub fn check(bytes: &[u8], fingerprint: u64) -> Result<&[u8], RestoreError> {
+        let damaged = |detail: &str| RestoreError::Damaged { detail: detail.into() };
         let Some((header, payload)) = bytes.split_at_checked(HEADER) else {
             return Err(damaged("shorter than its header"));
         };
@@ -104,8 +113,12 @@ impl State {
         if word(16) != crc32fast::hash(payload) {
             return Err(damaged("the checksum does not match"));
         }
-        let (state, rest) =
-            postcard::take_from_bytes::<State>(payload).map_err(|_| damaged("the payload cannot be decoded"))?;
+        Ok(payload)
+    }
+
+    /// A state whose lists are as long as those of `like`.
+    fn check_shape(state: State, rest: &[u8], like: &State, steps: usize) -> Result<Self, RestoreError> {
+        let damaged = |detail: &str| RestoreError::Damaged { detail: detail.into() };
         let lengths = |s: &State| {
             [
                 s.coefficients.len(),

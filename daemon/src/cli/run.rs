@@ -103,7 +103,7 @@ impl Job {
         let ports =
             port::ports_of(&opened.model, ports_toml.as_deref()).map_err(|findings| refuse(&deck, &findings))?;
         let settings = settings::resolve(&assignments, &ports.inputs)?;
-        let options = PrepareOptions { path: path.into(), threads, ports_toml };
+        let options = PrepareOptions { path: path.into(), threads, ports_toml, ..PrepareOptions::default() };
         let mut diagnostics = opened.diagnostics;
         let prepared = PreparedModel::prepare(opened.model, &options, &mut |phase| {
             let stage = Stage::Phase(phase);

@@ -48,6 +48,7 @@ impl Models {
             dialect: request.dialect,
             path: request.path,
             ports_toml: request.ports_toml.clone(),
+            ..PrepareOptions::default()
         };
         let slot = {
             let mut slots = self.slots.lock().unwrap_or_else(PoisonError::into_inner);
@@ -84,6 +85,7 @@ fn prepare(request: &OpenRequest) -> Result<SharedModel, Vec<Diagnostic>> {
         path: convert::path(request.path),
         threads: request.threads as usize,
         ports_toml: request.ports_toml.clone(),
+        ..PrepareOptions::default()
     };
     match PreparedModel::prepare(model, &options, &mut |phase| tracing::debug!(?phase, "preparing")) {
         Ok(prepared) => {

@@ -121,7 +121,8 @@ pub fn pack_deck(request: &DeckRequest) -> Result<PackReport, PackError> {
     let ports = request.ports.clone();
     let experiment = Experiment::of(&model);
     let heading_text = model.heading.clone();
-    let options = PrepareOptions { path: request.path, threads: 1, ports_toml: ports.clone() };
+    let options =
+        PrepareOptions { path: request.path, threads: 1, ports_toml: ports.clone(), ..PrepareOptions::default() };
     let prepared = match PreparedModel::prepare(model, &options, &mut |_| {}) {
         Ok(prepared) => Arc::new(prepared),
         Err(errors) => {

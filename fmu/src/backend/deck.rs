@@ -69,7 +69,8 @@ pub fn prepare_shared(text: &DeckText) -> Result<Arc<PreparedModel>, String> {
 pub fn prepare(text: &DeckText) -> Result<PreparedModel, String> {
     let reading = deck::read_text(&text.deck, text.dialect);
     let model = reading.model.ok_or_else(|| quote(&reading.diagnostics))?;
-    let options = PrepareOptions { path: text.path, threads: 1, ports_toml: text.ports.clone() };
+    let options =
+        PrepareOptions { path: text.path, threads: 1, ports_toml: text.ports.clone(), ..PrepareOptions::default() };
     PreparedModel::prepare(model, &options, &mut |_| {}).map_err(|findings| quote(&findings))
 }
 

@@ -2,7 +2,9 @@
 
 use crate::model::{Procedure, StaticControl};
 use crate::procedure::loading::value_at;
-use crate::simulation::{AdvanceOutcome, ContactStatus, IncrementReport, Simulation, StatusChange, Watch};
+use crate::simulation::{
+    AdvanceOutcome, ContactStatus, CutbackReport, IncrementReport, Simulation, StatusChange, Watch,
+};
 use crate::solve::condensed::Response;
 use crate::solve::contact::{Problem, SolveCounts, SolveFailure, Unknowns};
 
@@ -84,6 +86,15 @@ impl Simulation {
                         if control.direct || smaller < control.increment_min || failure.is_final() {
                             return AdvanceOutcome::Stopped { reason: failure.describe(self) };
                         }
+                        let report = CutbackReport {
+                            step: self.state.step + 1,
+                            increment: self.state.counts[step].increments + 1,
+                            attempt,
+                            increment_size: size,
+                            next_size: smaller,
+                            reason: failure.describe(self),
+                        };
+                        watch.cutback(self, &report);
                         attempt += 1;
                         self.state.counts[step].cutbacks += 1;
                         self.set_increment(smaller);
@@ -178,7 +189,7 @@ impl Simulation {
             }
         };
         let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
-        prepared.condensed.tangential(response, &mut work.scratch, &mut work.tangential);
+        prepared.condensed.tangential(&prepared.contact, response, &mut work.scratch, &mut work.tangential);
         let n = prepared.points.len();
         let slid: Vec<u32> = (0..n)
             .filter(|&i| {
@@ -256,6 +267,7 @@ impl Simulation {
         total.increments += 1;
         total.equilibrium_iterations += counts.equilibrium_iterations;
         total.severe_discontinuity_iterations += counts.severe_discontinuity_iterations;
+        total.factorizations += counts.factorizations;
         let easy = attempt == 1 && counts.equilibrium_iterations <= EASY_ITERATIONS;
         self.state.easy_increments = if easy { self.state.easy_increments + 1 } else { 0 };
         if clipped {

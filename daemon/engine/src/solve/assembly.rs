@@ -21,11 +21,11 @@ impl LowerMatrix {
         self.starts.len() - 1
     }
 
-    /// Adds to an entry of the lower triangle that the pattern has.
-    fn add(&mut self, row: usize, column: usize, value: f64) {
+    /// Position of an entry of the lower triangle that the pattern has.
+    pub fn entry(&self, row: usize, column: usize) -> usize {
         let range = self.starts[column]..self.starts[column + 1];
         let at = self.rows[range.clone()].binary_search(&row).expect("nodes that an element couples are neighbours");
-        self.values[range.start + at] += value;
+        range.start + at
     }
 
     /// Diagonal entries: the first of each column.
@@ -194,7 +194,8 @@ fn add_constrained(context: &Context<'_>, layout: &Layout<'_>, element: u32, mat
                     let entry = if a <= b { block[3 * i + j] } else { block[3 * j + i] };
                     for &(row, p) in &shares[3 * a + i] {
                         for &(column, q) in shares[3 * b + j].iter().filter(|&&(column, _)| column <= row) {
-                            matrix.add(row, column, p * q * entry);
+                            let at = matrix.entry(row, column);
+                            matrix.values[at] += p * q * entry;
                         }
                     }
                 }

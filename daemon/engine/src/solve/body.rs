@@ -1,12 +1,14 @@
 //! One elastic body: its factored stiffness, condensed onto the contact points that touch it.
 
 use super::assembly::{self, Layout};
+use super::budget::{Shortage, condensed_numbers};
 use super::columns::Column;
 use super::context::Context;
 use super::linear::{Dense, Factor, Symbolic};
 use super::motions::Motions;
 use super::numbering::{NOT_FREE, NodeGraph, Reach};
 use super::{ordering, reactions};
+use crate::contact::points::ContactPoint;
 use crate::model::NodeId;
 use crate::simulation::Phase;
 
@@ -24,10 +26,18 @@ pub struct Body {
     factor: Option<Factor>,
     /// Contact points with an unknown in this body.
     pub points: Vec<u32>,
+    /// Rows of these points on the unknowns; only of a body that is not condensed.
+    rows: Option<ContactRows>,
     /// `Y = L_cc⁻¹ B_cᵀ`: retained unknowns x points of this body.
     spread: Dense,
     /// Displacements of the columns on the unknowns.
     pub columns: Dense,
+}
+
+/// Rows of contact points on the unknowns of a body.
+struct ContactRows {
+    normals: Vec<Vec<(u32, f64)>>,
+    tangents: [Vec<Vec<(u32, f64)>>; 2],
 }
 
 /// What the rest of the model needs of a body at set-up.
@@ -42,25 +52,31 @@ pub struct BodyContribution {
     pub prescribed_energy: Dense,
 }
 
-/// Why a body could not be prepared: a direction of a node without stiffness.
+/// Why a body could not be prepared.
 #[derive(Debug)]
-pub struct NoStiffness {
-    /// The node.
-    pub node: NodeId,
-    /// Direction, 0..3.
-    pub direction: usize,
+pub enum BodyError {
+    /// A direction of a node has no stiffness.
+    NoStiffness {
+        /// The node.
+        node: NodeId,
+        /// Direction, 0..3.
+        direction: usize,
+    },
+    /// It does not fit into memory.
+    Memory(Shortage),
 }
 
 impl Body {
-    /// Assembles, orders, factors and condenses a body.
+    /// Assembles, orders and factors a body; condenses it unless `condense` is false.
     pub fn prepare(
         context: &Context<'_>,
         nodes: &[NodeId],
         elements: &[u32],
         motions: &Motions,
         body_points: Vec<u32>,
+        condense: bool,
         announce: &mut dyn FnMut(Phase),
-    ) -> Result<(Self, BodyContribution), NoStiffness> {
+    ) -> Result<(Self, BodyContribution), BodyError> {
         announce(Phase::Order);
         let reach = Reach::new(&context.model.mesh, elements, context.constraints);
         let graph = NodeGraph::new(&reach, nodes, elements, context.local);
@@ -70,7 +86,7 @@ impl Body {
         for (node, direction) in motions.anchors(is_free) {
             held[node] |= 1 << direction;
         }
-        let retained = retained_nodes(context, nodes, &body_points);
+        let retained = if condense { retained_nodes(context, nodes, &body_points) } else { Vec::new() };
         let order = ordering::order(&graph, &retained);
         let mut unknowns = vec![[NOT_FREE; 3]; nodes.len()];
         let (mut count, mut interior) = (0usize, 0usize);
@@ -96,6 +112,10 @@ impl Body {
         } else {
             announce(Phase::Symbolic);
             let symbolic = Symbolic::analyse(&matrix);
+            let condensed = if condense { condensed_numbers(count - interior, body_points.len()) } else { 0 };
+            let columns = 2 * count * context.columns.len();
+            let numbers = symbolic.size().values + 2 * matrix.values.len() + condensed + columns;
+            context.budget.take(numbers).map_err(BodyError::Memory)?;
             announce(Phase::Numeric);
             let factor = Factor::new(&matrix, symbolic).map_err(|pivot| {
                 let (node, direction) = unknowns
@@ -105,7 +125,7 @@ impl Body {
                     .find(|&(_, _, u)| u as usize == pivot.unknown)
                     .map(|(n, d, _)| (nodes[n], d))
                     .expect("every unknown is a direction of a node");
-                NoStiffness { node, direction }
+                BodyError::NoStiffness { node, direction }
             })?;
             Some(factor)
         };
@@ -118,10 +138,14 @@ impl Body {
             interior,
             factor,
             points: body_points,
+            rows: None,
             spread: Dense::default(),
             columns: Dense::default(),
         };
-        let contribution = body.condense(context, elements);
+        let contribution = match condense {
+            true => body.condense(context, elements),
+            false => body.keep_rows(context, elements),
+        };
         Ok((body, contribution))
     }
 
@@ -145,6 +169,59 @@ impl Body {
                 add(unknown as usize, v);
             }
         });
+    }
+
+    /// Keeps the contact rows instead of condensing.
+    fn keep_rows(&mut self, context: &Context<'_>, elements: &[u32]) -> BodyContribution {
+        let rows = |pick: &dyn Fn(&ContactPoint) -> [f64; 3]| -> Vec<Vec<(u32, f64)>> {
+            let of_point = |&p: &u32| {
+                let point = &context.points[p as usize];
+                let mut row = Vec::new();
+                point.row(pick(point), |node, direction, value| {
+                    self.spread_over(context, node, direction, value, |u, v| row.push((u as u32, v)));
+                });
+                row
+            };
+            self.points.iter().map(of_point).collect()
+        };
+        let normals = rows(&|p| p.normal.map(|x| -x));
+        let tangents = [rows(&|p| p.tangents[0]), rows(&|p| p.tangents[1])];
+        self.rows = Some(ContactRows { normals, tangents });
+        let (products, prescribed_energy) = self.solve_columns(context, elements);
+        BodyContribution {
+            compliance: Dense::default(),
+            slip_compliance: Dense::default(),
+            products,
+            prescribed_energy,
+        }
+    }
+
+    /// Adds what contact forces do to the overclosures (`W F`) and to the tangential displacements (`W_t F`, first tangents,
+    /// then second) of a body that is not condensed; an empty slice is not wanted.
+    pub fn respond(&self, forces: &[f64], relief: &mut [f64], slip: &mut [f64]) {
+        let (Some(rows), Some(factor)) = (&self.rows, &self.factor) else { return };
+        if self.points.iter().all(|&p| forces[p as usize] == 0.0) {
+            return;
+        }
+        let mut u = Dense::zeros(self.count, 1);
+        for (row, &p) in rows.normals.iter().zip(&self.points) {
+            row.iter().for_each(|&(i, v)| u.values[i as usize] += v * forces[p as usize]);
+        }
+        factor.solve(&mut u);
+        let product = |row: &[(u32, f64)]| row.iter().map(|&(i, v)| v * u.values[i as usize]).sum::<f64>();
+        if !relief.is_empty() {
+            for (row, &p) in rows.normals.iter().zip(&self.points) {
+                relief[p as usize] += product(row);
+            }
+        }
+        if !slip.is_empty() {
+            let n = slip.len() / 2;
+            for (t, tangents) in rows.tangents.iter().enumerate() {
+                for (row, &p) in tangents.iter().zip(&self.points) {
+                    slip[t * n + p as usize] += product(row);
+                }
+            }
+        }
     }
 
     fn condense(&mut self, context: &Context<'_>, elements: &[u32]) -> BodyContribution {
@@ -224,8 +301,18 @@ impl Body {
 
     /// Unknowns of the body under given column coefficients and contact forces (one per contact point of the model).
     pub fn recover(&self, coefficients: &[f64], forces: &[f64]) -> Vec<f64> {
-        // L⁻¹ Bᵀ F is zero on the interior: only the backward half of the solve is left.
         let mut contact = Dense::zeros(self.count, 1);
+        if let Some(rows) = &self.rows {
+            for (row, &p) in rows.normals.iter().zip(&self.points) {
+                row.iter().for_each(|&(i, v)| contact.values[i as usize] -= v * forces[p as usize]);
+            }
+            if let Some(factor) = &self.factor {
+                factor.solve(&mut contact);
+            }
+            self.columns.multiply_add(coefficients, &mut contact.values);
+            return contact.values;
+        }
+        // L⁻¹ Bᵀ F is zero on the interior: only the backward half of the solve is left.
         for (k, &p) in self.points.iter().enumerate() {
             let force = forces[p as usize];
             if force != 0.0 {
@@ -253,7 +340,7 @@ impl Body {
 }
 
 /// Body-local nodes that the rows of contact points reach, ascending.
-fn retained_nodes(context: &Context<'_>, nodes: &[NodeId], body_points: &[u32]) -> Vec<u32> {
+pub fn retained_nodes(context: &Context<'_>, nodes: &[NodeId], body_points: &[u32]) -> Vec<u32> {
     let mut touched = vec![false; nodes.len()];
     for &p in body_points {
         context.points[p as usize].row([1.0; 3], |node, direction, value| {

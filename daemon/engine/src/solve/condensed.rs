@@ -17,6 +17,7 @@ use rustc_hash::FxHashMap;
 
 use super::body::{Body, BodyContribution};
 use super::columns::Column;
+use super::contact::ContactSystem;
 use super::context::Context;
 use super::floating::{Floating, MotionLoads};
 use super::linear::Dense;
@@ -59,7 +60,8 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Puts the contributions of the bodies together; the second result is `W` [length/force].
+    /// Puts the contributions of the bodies together; the second result is `W` [length/force], empty unless the
+    /// bodies are condensed.
     pub fn new(
         context: &Context<'_>,
         numbering: &Bodies,
@@ -67,16 +69,17 @@ impl Condensed {
         contributions: &[BodyContribution],
         floating: &Floating,
         motion_loads: MotionLoads,
+        condensed: bool,
     ) -> (Self, Dense) {
         let (points, columns) = (context.points, context.columns);
         let (n, m) = (points.len(), columns.len());
-        let mut compliance = Dense::zeros(n, n);
-        let mut slip_compliance = Dense::zeros(2 * n, n);
+        let mut compliance = if condensed { Dense::zeros(n, n) } else { Dense::default() };
+        let mut slip_compliance = if condensed { Dense::zeros(2 * n, n) } else { Dense::default() };
         let mut products = Dense::zeros(m, m);
         let mut prescribed_energy = Dense::zeros(m, m);
         for (body, part) in bodies.iter().zip(contributions) {
             let k = body.points.len();
-            for (j, &q) in body.points.iter().enumerate() {
+            for (j, &q) in body.points.iter().enumerate().filter(|_| condensed) {
                 for (i, &p) in body.points.iter().enumerate() {
                     compliance.column_mut(q as usize)[p as usize] += part.compliance.column(j)[i];
                     for t in 0..2 {
@@ -133,9 +136,9 @@ impl Condensed {
     }
 
     /// Relative tangential displacements.
-    pub fn tangential(&self, response: Response<'_>, scratch: &mut [f64], out: &mut [f64]) {
+    pub fn tangential(&self, contact: &ContactSystem, response: Response<'_>, scratch: &mut [f64], out: &mut [f64]) {
         scratch.fill(0.0);
-        self.slip_compliance.multiply_add(response.forces, scratch);
+        contact.slip_relief(&self.slip_compliance, response.forces, scratch);
         out.fill(0.0);
         self.slip_columns.multiply_add(response.coefficients, out);
         self.slip_motions.multiply_add(response.motions, out);

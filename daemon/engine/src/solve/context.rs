@@ -1,5 +1,6 @@
 //! What is known of a model when its bodies are prepared.
 
+use super::budget::Budget;
 use super::columns::Column;
 use super::constraints::Constraints;
 use crate::contact::points::ContactPoint;
@@ -16,6 +17,8 @@ pub struct Context<'a> {
     pub constraints: &'a Constraints,
     /// Body-local number of each node.
     pub local: &'a [u32],
+    /// Memory that may be used.
+    pub budget: &'a Budget,
     /// All contact points.
     pub points: &'a [ContactPoint],
     /// Load and displacement columns.

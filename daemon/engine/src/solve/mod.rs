@@ -1,7 +1,9 @@
 //! Linear algebra and the contact solve: bodies are factored once and condensed onto their contact points.
 
 pub mod assembly;
+pub mod bodies;
 pub mod body;
+pub mod budget;
 pub mod columns;
 pub mod condensed;
 pub mod constraints;
@@ -15,3 +17,4 @@ mod ordering;
 pub mod parts;
 pub mod reactions;
 mod rigid;
+pub mod sparse;

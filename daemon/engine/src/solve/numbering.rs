@@ -98,6 +98,8 @@ pub struct Reach<'a> {
     mesh: &'a Mesh,
     /// Elements with dependent nodes.
     extended: FxHashMap<u32, Vec<NodeId>>,
+    /// Nodes that something else couples.
+    others: Vec<Vec<NodeId>>,
 }
 
 impl<'a> Reach<'a> {
@@ -116,7 +118,18 @@ impl<'a> Reach<'a> {
                 extended.insert(e, all);
             }
         }
-        Self { mesh, extended }
+        Self { mesh, extended, others: Vec::new() }
+    }
+
+    /// With further groups of nodes that are coupled.
+    pub fn with(mut self, others: Vec<Vec<NodeId>>) -> Self {
+        self.others = others;
+        self
+    }
+
+    /// Nodes of the i-th group that is coupled: elements first, then the others.
+    fn group(&self, elements: &[u32], i: usize) -> &[NodeId] {
+        if i < elements.len() { self.nodes(elements[i]) } else { &self.others[i - elements.len()] }
     }
 
     /// Nodes that an element couples.
@@ -143,8 +156,9 @@ impl NodeGraph {
     pub fn new(reach: &Reach<'_>, nodes: &[NodeId], elements: &[u32], local: &[u32]) -> Self {
         let n = nodes.len();
         let mut count = vec![0u32; n + 1];
-        for &e in elements {
-            for node in reach.nodes(e) {
+        let groups = elements.len() + reach.others.len();
+        for e in 0..groups {
+            for node in reach.group(elements, e) {
                 count[local[node.index()] as usize + 1] += 1;
             }
         }
@@ -153,10 +167,10 @@ impl NodeGraph {
         }
         let mut fill = count.clone();
         let mut incident = vec![0u32; count[n] as usize];
-        for &e in elements {
-            for node in reach.nodes(e) {
+        for e in 0..groups {
+            for node in reach.group(elements, e) {
                 let slot = &mut fill[local[node.index()] as usize];
-                incident[*slot as usize] = e;
+                incident[*slot as usize] = e as u32;
                 *slot += 1;
             }
         }
@@ -168,7 +182,7 @@ impl NodeGraph {
             mark[i] = i as u32;
             let begin = neighbours.len();
             for &e in &incident[count[i] as usize..count[i + 1] as usize] {
-                for node in reach.nodes(e) {
+                for node in reach.group(elements, e as usize) {
                     let j = local[node.index()];
                     if mark[j as usize] != i as u32 {
                         mark[j as usize] = i as u32;

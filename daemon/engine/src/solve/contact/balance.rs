@@ -8,7 +8,8 @@
 //! Source: proximal point method on the multipliers of the balance (Rockafellar 1976); for problems of this kind it converges
 //! from any start, linearly at a rate that softer springs make as fast as one likes.
 
-use super::{ContactSolver, ContactSystem, Problem, SPRING_RATIO, SolveCounts, SolveFailure, Unknowns, View};
+use super::view::{Compliance, Springs};
+use super::{ContactSolver, ContactSystem, Problem, SPRING_RATIO, SolveCounts, SolveFailure, Structure, Unknowns};
 use crate::solve::linear::Dense;
 
 /// Steps before an attempt is given up; five are usual.
@@ -31,14 +32,14 @@ const SOFTEST: f64 = 1e-16;
 pub(super) struct BalanceWork {
     /// `W + D ε⁻¹ Dᵀ` and the springs that went into it.
     compliance: Dense,
-    compliance_springs: Vec<f64>,
+    springs: Vec<f64>,
     free: Vec<f64>,
     place: Vec<f64>,
     residual: Vec<f64>,
 }
 
 impl ContactSolver {
-    /// Solves for contact forces and motions. On failure the unknowns are left as they are at that moment.
+    /// Solves for contact forces and motions; `springs` stay as they are where no motion is free. On failure the unknowns are left as they are at that moment.
     pub fn solve(
         &mut self,
         system: &ContactSystem,
@@ -46,7 +47,7 @@ impl ContactSolver {
         unknowns: &mut Unknowns<'_>,
     ) -> Result<SolveCounts, SolveFailure> {
         if system.gap_motions.columns == 0 {
-            let view = View { compliance: &system.compliance, points: &system.points, behaviors: &system.behaviors };
+            let view = system.held(None);
             let scale = problem.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
             return self.solve_held(&view, problem.free, scale, unknowns);
         }
@@ -82,11 +83,18 @@ impl ContactSolver {
                 self.forget_factor();
             }
             let scale = work.free_overclosures(system, problem, unknowns);
-            let view = View { compliance: &work.compliance, points: &system.points, behaviors: &system.behaviors };
+            let view = system.held(Some(match &system.structure {
+                Structure::Dense(_) => Compliance::Dense(&work.compliance),
+                Structure::Sparse(sparse) => Compliance::Sparse(
+                    sparse,
+                    Some(Springs { gaps: &system.gap_motions, springs: &work.springs, resisted: &system.resisted }),
+                ),
+            }));
             view.relief(unknowns.forces, unknowns.relief);
             let done = self.solve_held(&view, &work.free, scale, unknowns)?;
             counts.equilibrium_iterations += done.equilibrium_iterations;
             counts.severe_discontinuity_iterations += done.severe_discontinuity_iterations;
+            counts.factorizations += done.factorizations;
             let worst = work.move_on(system, problem, unknowns);
             let slow = worst > SLOW * previous;
             let stiffened = self.adjust_springs(system, unknowns.springs, slow);
@@ -141,12 +149,15 @@ impl ContactSolver {
 }
 
 impl BalanceWork {
-    /// `W + D ε⁻¹ Dᵀ`; whether it is another one than before.
+    /// Takes springs over, with `W + D ε⁻¹ Dᵀ` where there is a `W`; whether that is another one than before.
     fn hold(&mut self, system: &ContactSystem, springs: &[f64]) -> bool {
-        if self.compliance_springs == springs {
+        if self.springs == springs {
             return false;
         }
-        self.compliance.clone_from(&system.compliance);
+        self.springs.clear();
+        self.springs.extend_from_slice(springs);
+        let Structure::Dense(compliance) = &system.structure else { return false };
+        self.compliance.clone_from(compliance);
         let n = self.compliance.rows;
         for (m, spring) in springs.iter().enumerate().filter(|&(m, _)| system.resisted[m]) {
             let d = system.gap_motions.column(m);
@@ -157,8 +168,6 @@ impl BalanceWork {
                 }
             }
         }
-        self.compliance_springs.clear();
-        self.compliance_springs.extend_from_slice(springs);
         true
     }
 

@@ -13,8 +13,10 @@
 //! Sources: damped Newton on a convex function (Boyd and Vandenberghe 9.5); block principal pivoting with the
 //! single-pivot safeguard (Portugal, Júdice, Vicente 1994).
 
+use super::active_sparse::SparseWork;
 use super::balance::BalanceWork;
-use super::{SolveCounts, SolveFailure, Unknowns, View};
+use super::view::{Compliance, View};
+use super::{SolveCounts, SolveFailure, Unknowns};
 use crate::law::{NormalBehavior, PressureLaw};
 use crate::solve::contact::ContactSystem;
 use crate::solve::linear::{self, DenseScratch};
@@ -54,6 +56,9 @@ pub struct ContactSolver {
     factor_compliance: Vec<f64>,
     factor_rows: Vec<u32>,
     factors: u32,
+    /// Forces at the start of the solve.
+    start: Vec<f64>,
+    sparse: SparseWork,
     scratch: DenseScratch,
     pub(super) balance: BalanceWork,
 }
@@ -84,7 +89,8 @@ impl ContactSolver {
     }
 
     /// Dense factorisations so far.
-    pub fn factors(&self) -> u32 {
+    #[cfg(test)]
+    pub(super) fn factors(&self) -> u32 {
         self.factors
     }
 
@@ -102,6 +108,9 @@ impl ContactSolver {
         let n = view.points.len();
         let mut counts = SolveCounts::default();
         let has_hard = (0..n).any(|i| view.is_hard(i));
+        self.start.clear();
+        self.start.extend_from_slice(forces);
+        let factorizations = self.sparse.factorizations;
         for i in 0..n {
             self.is_active[i] = view.is_hard(i) && closed[i];
         }
@@ -137,6 +146,7 @@ impl ContactSolver {
                 counts.equilibrium_iterations += 1;
             }
             if fraction == 1.0 && self.is_balanced(view, free, forces, overclosures) {
+                counts.factorizations = self.sparse.factorizations - factorizations;
                 // The last step was taken whole: `relief` is `W F` as `relief` of the view computes it.
                 return Ok(counts);
             }
@@ -156,9 +166,9 @@ impl ContactSolver {
                 let at = law.evaluate(overclosures[i]);
                 // A point so soft against the bodies that its force cannot matter is left out: its compliance
                 // would only bring overflow into the factor.
-                let softness = at.stiffness * point.area * view.compliance.column(i)[i];
-                self.is_active[i] =
-                    softness > NEGLIGIBLE_STIFFNESS || (view.compliance.column(i)[i] == 0.0 && at.stiffness > 0.0);
+                let own = view.own(i);
+                let softness = at.stiffness * point.area * own;
+                self.is_active[i] = softness > NEGLIGIBLE_STIFFNESS || (own == 0.0 && at.stiffness > 0.0);
                 if self.is_active[i] {
                     self.compliance[i] = 1.0 / (point.area * at.stiffness);
                     self.onset[i] = overclosures[i] - at.pressure / at.stiffness;
@@ -220,6 +230,9 @@ impl ContactSolver {
     fn solve_active(&mut self, view: &View<'_>, free: &[f64]) {
         let n = view.points.len();
         let compliance = |s: &Self, i: u32| if view.is_hard(i as usize) { 0.0 } else { s.compliance[i as usize] };
+        if let Compliance::Sparse(..) = view.compliance {
+            return self.solve_active_sparse(view, free);
+        }
         let unchanged = self.factor_points == self.active
             && self.active.iter().zip(&self.factor_compliance).all(|(&i, &c)| c == compliance(self, i));
         if !unchanged {
@@ -254,13 +267,34 @@ impl ContactSolver {
         }
     }
 
+    /// The same by sparse solves; starts from the forces of the last model.
+    fn solve_active_sparse(&mut self, view: &View<'_>, free: &[f64]) {
+        self.right.clear();
+        self.factor_compliance.clear();
+        let mut forces: Vec<f64> = Vec::with_capacity(self.active.len());
+        for &i in &self.active {
+            let hard = view.is_hard(i as usize);
+            self.right.push(free[i as usize] - if hard { 0.0 } else { self.onset[i as usize] });
+            self.factor_compliance.push(if hard { 0.0 } else { self.compliance[i as usize] });
+            forces.push(self.start[i as usize]);
+        }
+        let solved = self.sparse.solve(view, &self.active, &self.factor_compliance, &self.right, &mut forces);
+        self.factor_rows.clone_from(&self.active);
+        self.trial.fill(0.0);
+        for (&i, force) in self.active.iter().zip(&forces) {
+            // Without a factor nothing is known: the iteration ends as not converged.
+            self.trial[i as usize] = if solved { *force } else { f64::NAN };
+        }
+    }
+
     /// `W + C` on the rows of the factor, lower triangle used.
     fn fill_factor(&mut self, view: &View<'_>) {
+        let Compliance::Dense(w) = view.compliance else { return };
         let size = self.factor_rows.len();
         self.factor.clear();
         self.factor.reserve(size * size);
         for &j in &self.factor_rows {
-            let column = view.compliance.column(j as usize);
+            let column = w.column(j as usize);
             let begin = self.factor.len();
             self.factor.extend(self.factor_rows.iter().map(|&i| column[i as usize]));
             if !view.is_hard(j as usize) {
@@ -272,7 +306,7 @@ impl ContactSolver {
 
     /// Compliance at a point that the last model took part with: that of the bodies and of the law; none at open points.
     pub(super) fn present_compliance(&self, system: &ContactSystem, i: usize) -> Option<f64> {
-        let own = system.compliance.column(i)[i];
+        let own = system.held(None).own(i);
         match system.is_hard(i) {
             true => self.is_active[i].then_some(own),
             false => (self.is_active[i] && self.trial[i] > 0.0).then(|| own + self.compliance[i]),
@@ -307,12 +341,14 @@ impl ContactSolver {
 
     /// A hard point that was left out as dependent must be satisfied by the others.
     fn check_conflicts(&self, view: &View<'_>, free: &[f64], free_scale: f64) -> Result<(), SolveFailure> {
-        if self.factor_rows.len() == self.active.len() {
+        let dense = matches!(view.compliance, Compliance::Dense(_));
+        if dense && self.factor_rows.len() == self.active.len() {
             return Ok(());
         }
         let conflict = |&i: &u32| -> Option<(u32, f64)> {
             let overclosure = free[i as usize] - self.relief_trial[i as usize];
-            let dependent = view.is_hard(i as usize) && self.factor_rows.binary_search(&i).is_err();
+            // Conjugate gradients do not tell which points depend on others: all are looked at.
+            let dependent = view.is_hard(i as usize) && (!dense || self.factor_rows.binary_search(&i).is_err());
             (dependent && overclosure > CONFLICT_TOLERANCE * free_scale).then_some((i, overclosure))
         };
         let points: Vec<_> = self.active.iter().filter_map(conflict).collect();
@@ -369,8 +405,7 @@ impl ContactSolver {
 
     /// Whether the laws are satisfied without springs on the motions.
     pub(super) fn laws_hold(&self, system: &ContactSystem, free: &[f64], unknowns: &Unknowns<'_>) -> bool {
-        let view = View { compliance: &system.compliance, points: &system.points, behaviors: &system.behaviors };
-        self.is_balanced(&view, free, unknowns.forces, unknowns.overclosures)
+        self.is_balanced(&system.held(None), free, unknowns.forces, unknowns.overclosures)
     }
 
     /// Whether the end of the present step satisfies the laws.
@@ -398,7 +433,7 @@ impl ContactSolver {
         let point = &view.points[i];
         let NormalBehavior::Softened(law) = &view.behaviors[point.behavior] else { return true };
         let at = law.evaluate(overclosure);
-        let own = view.compliance.column(i)[i];
+        let own = view.own(i);
         if !self.is_active[i] && at.stiffness * point.area * own <= NEGLIGIBLE_STIFFNESS && own > 0.0 {
             // Left out of the model because its force cannot matter.
             return true;
@@ -407,8 +442,7 @@ impl ContactSolver {
         if residual <= FORCE_TOLERANCE * scale {
             return true;
         }
-        // The overclosure is a sum whose terms may cancel: what its rounding does to the force cannot be asked for.
-        let terms: f64 = view.compliance.column(i).iter().zip(forces).map(|(w, f)| (w * f).abs()).sum();
-        residual <= 16.0 * f64::EPSILON * (free[i].abs() + terms) * at.stiffness * point.area
+        // What the rounding of the overclosure does to the force cannot be asked for.
+        residual <= view.rounding(i, free[i], overclosure, forces) * at.stiffness * point.area
     }
 }

@@ -7,17 +7,16 @@
 //!
 //! `held.rs` solves it with the motions `α` held, `balance.rs` finds them.
 
+mod active_sparse;
 mod balance;
 mod held;
 mod system;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use held::ContactSolver;
-pub use system::{ContactSystem, PointBehavior, initial_springs};
-
-use super::linear::Dense;
-use crate::law::NormalBehavior;
+pub use system::{ContactSystem, PointBehavior, Structure, initial_springs};
 
 /// Springs on motions, relative to the stiffness with which closed contact holds them: soft enough to lead to the balance in a few
 /// steps, stiff enough to keep thirteen digits.
@@ -50,24 +49,6 @@ pub struct Unknowns<'a> {
     pub springs: &'a mut [f64],
 }
 
-/// The points with a compliance that holds every motion.
-struct View<'a> {
-    compliance: &'a Dense,
-    points: &'a [PointBehavior],
-    behaviors: &'a [NormalBehavior],
-}
-
-impl View<'_> {
-    fn relief(&self, forces: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        self.compliance.multiply_add(forces, out);
-    }
-
-    fn is_hard(&self, point: usize) -> bool {
-        matches!(self.behaviors[self.points[point].behavior], NormalBehavior::Hard)
-    }
-}
-
 /// Work of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SolveCounts {
@@ -75,6 +56,8 @@ pub struct SolveCounts {
     pub equilibrium_iterations: u32,
     /// Iterations that changed the status of a point.
     pub severe_discontinuity_iterations: u32,
+    /// Sparse factorisations.
+    pub factorizations: u32,
 }
 
 /// Why no solution was found.

@@ -1,7 +1,9 @@
 //! The contact points as the solver sees them.
 
+use super::view::{Compliance, View};
 use crate::law::{NormalBehavior, PressureLaw};
 use crate::solve::linear::Dense;
+use crate::solve::sparse::SparseStructure;
 
 /// Area and behaviour of a contact point.
 #[derive(Clone, Debug)]
@@ -12,10 +14,18 @@ pub struct PointBehavior {
     pub behavior: usize,
 }
 
+/// How contact forces meet the bodies.
+pub enum Structure {
+    /// Condensed: `W` as a matrix.
+    Dense(Dense),
+    /// By sparse solves.
+    Sparse(Box<SparseStructure>),
+}
+
 /// Contact points, what their forces do, and the motions that they hold: immutable.
 pub struct ContactSystem {
-    /// `W = B K⁻¹ Bᵀ` [length/force].
-    pub compliance: Dense,
+    /// `W = B K⁻¹ Bᵀ` [length/force], as a matrix or by solves.
+    pub structure: Structure,
     /// Points.
     pub points: Vec<PointBehavior>,
     /// Behaviours that the points refer to.
@@ -31,8 +41,24 @@ pub struct ContactSystem {
 impl ContactSystem {
     /// `W F`: by how much contact forces take the overclosures back.
     pub fn relief(&self, forces: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        self.compliance.multiply_add(forces, out);
+        self.held(None).relief(forces, out);
+    }
+
+    /// `W_t F`, added to `out`; `dense` is `W_t` where there is one.
+    pub fn slip_relief(&self, dense: &Dense, forces: &[f64], out: &mut [f64]) {
+        match &self.structure {
+            Structure::Dense(_) => dense.multiply_add(forces, out),
+            Structure::Sparse(sparse) => sparse.slip(forces, out),
+        }
+    }
+
+    /// The points without springs on motions, or with a matrix that has them.
+    pub(super) fn held<'a>(&'a self, with_springs: Option<Compliance<'a>>) -> View<'a> {
+        let compliance = with_springs.unwrap_or(match &self.structure {
+            Structure::Dense(w) => Compliance::Dense(w),
+            Structure::Sparse(sparse) => Compliance::Sparse(sparse, None),
+        });
+        View { compliance, points: &self.points, behaviors: &self.behaviors }
     }
 
     /// Final overclosures `h_free − W F + D α` from `free` and the `relief` `W F`. The one place where they are computed, so that a
@@ -63,9 +89,13 @@ impl ContactSystem {
 }
 
 /// Springs to begin with: soft against the bodies where contact may hold each motion.
-pub fn initial_springs(compliance: &Dense, gap_motions: &Dense) -> Vec<f64> {
+pub fn initial_springs(structure: &Structure, gap_motions: &Dense) -> Vec<f64> {
+    let own = |i: usize| match structure {
+        Structure::Dense(w) => w.column(i)[i],
+        Structure::Sparse(sparse) => sparse.own[i],
+    };
     let of_motion = |m: usize| {
-        let stiffness = |(i, d): (usize, &f64)| d * d / compliance.column(i)[i];
+        let stiffness = |(i, d): (usize, &f64)| d * d / own(i);
         let all: Vec<f64> =
             gap_motions.column(m).iter().enumerate().map(stiffness).filter(|s| s.is_finite() && *s > 0.0).collect();
         if all.is_empty() { 1.0 } else { super::SPRING_RATIO * all.iter().sum::<f64>() / all.len() as f64 }

@@ -22,6 +22,7 @@ const RELAXATION: [(usize, f64); 4] = [(4, 1.0), (16, 0.8), (48, 0.1), (usize::M
 const WIDTH_MAX: usize = 512;
 
 /// Structure of L.
+#[derive(Clone)]
 pub struct Symbolic {
     pub(super) blocks: Blocks,
 }
@@ -69,6 +70,18 @@ impl Symbolic {
             value_starts: inner.col_ptr_for_val().to_vec(),
         };
         Self { blocks: blocks.cut(WIDTH_MAX) }
+    }
+
+    /// Multiplications and additions of the numeric factorisation.
+    pub fn operations(&self) -> f64 {
+        let blocks = &self.blocks;
+        (0..blocks.len())
+            .map(|s| {
+                let width = blocks.starts[s + 1] - blocks.starts[s];
+                let height = width + blocks.pattern_starts[s + 1] - blocks.pattern_starts[s];
+                (0..width).map(|j| ((height - j) as f64).powi(2)).sum::<f64>()
+            })
+            .sum()
     }
 
     /// Numbers that L will hold.
