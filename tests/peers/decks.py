@@ -23,10 +23,9 @@ def ours(path, folder):
 
 
 def exact(deck):
-    """Our law and our areas: a node of a node-based surface stands for 1 unless the interaction says otherwise."""
-    areas = np.ones(len(deck.areas)) if deck.node_based else deck.areas
+    """Our law; in the CalculiX dialect the areas are CalculiX's."""
     law = springs.Exact(deck.law[0]) if deck.kind == "LINEAR" else springs.Exponential(*deck.law)
-    return springs.solve(deck, law, areas)
+    return springs.solve(deck, law, deck.areas)
 
 
 def calculix(deck):
@@ -50,14 +49,11 @@ def smoothed_table(deck, largest):
 
 
 def with_table(text, deck, largest):
-    """Deck text with the law replaced by its table, and with CalculiX's area on a node-based surface."""
+    """Deck text with the law replaced by its table."""
     lines, skip = [], False
     for line in text.splitlines():
         keyword = line.upper().replace(" ", "")
         if keyword.startswith("*SURFACEBEHAVIOR"):
-            if deck.node_based:
-                (area,) = set(deck.areas.tolist())
-                lines.append(repr(area))
             lines += ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR", *smoothed_table(deck, largest)]
             skip = True
         elif line.startswith("*"):

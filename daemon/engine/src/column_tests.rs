@@ -46,7 +46,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
     Model {
         mesh,
         materials: vec![Material { name: "M".into(), youngs_modulus: 500.0, poissons_ratio: 0.0, density: None }],
-        interactions: vec![SurfaceInteraction { name: "I".into(), normal, node_area: 1.0 }],
+        interactions: vec![SurfaceInteraction { name: "I".into(), normal, node_area: None }],
         pairs: vec![ContactPair {
             name: "S_P".into(),
             secondary: SurfaceId(0),

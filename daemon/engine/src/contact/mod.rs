@@ -1,5 +1,6 @@
 //! Contact geometry: search, projection, tributary areas.
 
 pub mod adjust;
+mod node_areas;
 pub mod points;
 mod search;

@@ -4,12 +4,12 @@
 
 use rustc_hash::FxHashMap;
 
-use super::adjust;
 use super::search::{PrimarySurface, Query};
+use super::{adjust, node_areas};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
 use crate::element::{Coordinates, face};
-use crate::model::{FACE_NODES_MAX, FaceNodes, Mesh, Model, NodeId, SurfaceKind};
+use crate::model::{ContactPair, Dialect, FACE_NODES_MAX, FaceNodes, Mesh, Model, NodeId, SurfaceKind};
 
 /// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
 const OVERLAP_MAX: f64 = 0.5;
@@ -54,7 +54,7 @@ impl ContactPoint {
 }
 
 /// Secondary nodes of a surface with area and outward normal (none for a node-based surface), by node.
-pub(super) fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<(NodeId, f64, Option<[f64; 3]>)> {
+pub(super) fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<Secondary> {
     match kind {
         SurfaceKind::Nodes(nodes) => nodes.iter().map(|&n| (n, node_area, None)).collect(),
         SurfaceKind::Faces(faces) => {
@@ -94,6 +94,27 @@ fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
     [first, cross(normal, first)]
 }
 
+/// A secondary node, its area, and its area vector where it belongs to faces.
+type Secondary = (NodeId, f64, Option<[f64; 3]>);
+
+/// Secondary nodes of a pair with their areas as the dialect has them, and the labels of those whose area it leaves open.
+fn secondaries_of(model: &Model, pair: &ContactPair) -> (Vec<Secondary>, Vec<u32>) {
+    let mesh = &model.mesh;
+    let kind = &mesh.surfaces[pair.secondary.index()].kind;
+    let given = model.interactions[pair.interaction.index()].node_area;
+    let mut secondaries = secondary_nodes(mesh, kind, given.unwrap_or(1.0));
+    let mut unknown = Vec::new();
+    if let (SurfaceKind::Nodes(nodes), None, Dialect::Calculix) = (kind, given, model.dialect) {
+        for ((node, area, _), share) in secondaries.iter_mut().zip(node_areas::of_outer_faces(mesh, nodes)) {
+            match share {
+                Some(share) => *area = share,
+                None => unknown.push(mesh.node_labels[node.index()]),
+            }
+        }
+    }
+    (secondaries, unknown)
+}
+
 /// Contact points of all pairs, pair by pair, by node; and warnings about secondary nodes that found no partner or start deep
 /// inside one.
 ///
@@ -107,8 +128,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
             unreachable!("the deck reader admits element-based primary surfaces only")
         };
         let primary = PrimarySurface::new(mesh, faces);
-        let node_area = model.interactions[pair.interaction.index()].node_area;
-        let secondaries = secondary_nodes(mesh, &mesh.surfaces[pair.secondary.index()].kind, node_area);
+        let (secondaries, unknown) = secondaries_of(model, pair);
         let total = secondaries.len();
         let (mut lost, mut deep) = (Vec::new(), Vec::new());
         for (node, area, vector) in secondaries {
@@ -155,6 +175,11 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
             }
         };
         warn(
+            &unknown,
+            "have no outer faces without midside nodes, from which CalculiX takes the area of a node, and stand for 1",
+            "give the area on the data line of *SURFACE INTERACTION",
+        );
+        warn(
             &lost,
             "have no face of the primary surface opposite them and take no part in contact",
             "extend the primary surface if these nodes should be in contact",
@@ -171,6 +196,74 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A brick on another; node 9 of the upper one and node 20, held by a spring, form the secondary surface.
+    const NODES_ON_A_BRICK: &str = "\
+*NODE
+1, 0., 0., 0.
+2, 1., 0., 0.
+3, 1., 1., 0.
+4, 0., 1., 0.
+5, 0., 0., 1.
+6, 1., 0., 1.
+7, 1., 1., 1.
+8, 0., 1., 1.
+9, 0.2, 0.2, 1.
+10, 0.6, 0.2, 1.
+11, 0.6, 0.6, 1.
+12, 0.2, 0.6, 1.
+13, 0.2, 0.2, 1.5
+14, 0.6, 0.2, 1.5
+15, 0.6, 0.6, 1.5
+16, 0.2, 0.6, 1.5
+20, 0.8, 0.8, 1.
+*ELEMENT, TYPE=C3D8, ELSET=E
+1, 1, 2, 3, 4, 5, 6, 7, 8
+2, 9, 10, 11, 12, 13, 14, 15, 16
+*ELEMENT, TYPE=SPRING1, ELSET=HELD
+3, 20
+*SPRING, ELSET=HELD
+3
+1.
+*MATERIAL, NAME=M
+*ELASTIC
+1., 0.
+*SOLID SECTION, ELSET=E, MATERIAL=M
+*SURFACE, NAME=FEET, TYPE=NODE
+9
+20
+*SURFACE, NAME=FLOOR
+1, S2
+*SURFACE INTERACTION, NAME=I
+AREA
+*CONTACT PAIR, INTERACTION=I, SMALL SLIDING
+FEET, FLOOR
+*BOUNDARY
+1, 1, 3
+*STEP
+*STATIC
+*END STEP
+";
+
+    #[test]
+    fn nodes_stand_for_one_for_their_faces_or_for_what_the_interaction_says() {
+        let shares = 0.4 * 0.4 / 4.0 + 2.0 * 0.4 * 0.5 / 4.0;
+        for (line, dialect, areas, warned) in [
+            ("** none", Dialect::Abaqus, [1.0, 1.0], false),
+            ("** none", Dialect::Calculix, [shares, 1.0], true),
+            ("0.3", Dialect::Calculix, [0.3, 0.3], false),
+        ] {
+            let reading = crate::deck::read_text(&NODES_ON_A_BRICK.replace("AREA", line), dialect);
+            let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
+            let (points, warnings) = find(&model);
+            assert_eq!(points.len(), 2);
+            for (point, area) in points.iter().zip(areas) {
+                assert!((point.area - area).abs() < 1e-14, "{} is not {area}", point.area);
+            }
+            let told = warnings.iter().any(|w| w.message.contains("1 of 2 secondary nodes have no outer faces"));
+            assert_eq!(told, warned, "{warnings:?}");
+        }
+    }
 
     #[test]
     fn tangents_are_an_orthonormal_frame_for_any_normal() {

@@ -106,6 +106,12 @@ const DIFFERENCES: &[Difference] = &[
         "the same; a node in a corner is moved once",
         "in both dialects along the normal of the primary, in a corner against each side within the distance; the results show the moved coordinates",
     ),
+    follows(
+        "*SURFACE INTERACTION without an area, secondary surface of nodes",
+        "each node stands for 1",
+        "each node stands for its share of every outer face of a solid at it: the area of the face over the number of its corners",
+        "as CalculiX; a node without such faces, or with midside nodes on them, stands for 1, with a warning",
+    ),
     departs("*CONTACT PAIR without TYPE", "node-to-surface", "the run stops", "node-to-surface"),
     departs(
         "*CONTACT PAIR, initial overclosure",

@@ -81,8 +81,9 @@ pub struct SurfaceInteraction {
     pub name: String,
     /// Normal behaviour: hard or a softened law.
     pub normal: NormalBehavior,
-    /// Area that each point of a node-based secondary surface stands for \[length²\]; 1 unless given.
-    pub node_area: f64,
+    /// Area that each point of a node-based secondary surface stands for \[length²\], where the deck gives one. Otherwise 1, in
+    /// the CalculiX dialect a share of the outer faces at the node (`contact/node_areas.rs`).
+    pub node_area: Option<f64>,
 }
 
 /// `*CONTACT PAIR`, node-to-surface.

@@ -252,7 +252,7 @@ fn laws_are_read() {
     let law = normal(behavior, exponential, Dialect::Calculix);
     let NormalBehavior::Softened(PressureOverclosure::CalculixExponential(law)) = law else { panic!("not CalculiX's") };
     assert_eq!((law.clearance(), law.pressure()), (0.01, 5.0));
-    assert_eq!(model(&with("NAME=SI\n", "NAME=SI\n0.25\n")).interactions[0].node_area, 0.25);
+    assert_eq!(model(&with("NAME=SI\n", "NAME=SI\n0.25\n")).interactions[0].node_area, Some(0.25));
     assert!(accepted(&with("1e6\n", "1e6\n*FRICTION\n0.,\n"), abaqus).1.is_empty());
 }
 
@@ -528,6 +528,7 @@ fn output_requests_are_read() {
     assert_eq!(output.elements[0].variables, ["S"]);
     assert_eq!(output.contacts.len(), 3);
     assert_eq!(found.len(), 1, "{}", listing(&found));
+    warns(&with("*NSET, NSET=TOP", "*NSET, NSET=TOP, FREQUENCY=5"), "*NSET", "FREQUENCY is ignored");
     warns(&with("*END STEP", "*NODE FILE\n*END STEP"), "*NODE FILE", "names no variables");
     warns(&with("*NODE PRINT, ", "*NODE PRINT, COLOUR=RED, "), "*NODE PRINT", "there is no parameter COLOUR");
     refuses(&with("NSET=TOP, TOTALS", "NSET=TIP, TOTALS"), "*NODE PRINT", "no node set TIP");
@@ -549,6 +550,14 @@ fn keywords_and_parameters_that_are_not_known_are_refused_with_a_suggestion() {
     refuses(&with("*STEP\n", "*PART, NAME=P\n*STEP\n"), "*PART", "not supported");
     warns(&with("*STEP\n", "*PREPRINT, ECHO=NO\n*STEP\n"), "*PREPRINT", "ignored");
     refuses(&with("*MATERIAL, NAME=STEEL\n", "*MATERIAL, NAME=STEEL\n1., 2.\n"), "*MATERIAL", "takes no data lines");
+}
+
+#[test]
+fn what_belongs_to_a_refused_keyword_is_not_complained_about() {
+    let change = "*CHANGE FRICTION, INTERACTION=SI\n*FRICTION\n0.3\n*NODE PRINT";
+    let found = read(&with("*NODE PRINT", change)).diagnostics;
+    assert_eq!(found.len(), 1, "{}", listing(&found));
+    refuses(&with("*NODE PRINT", "*FRICTION\n0.3\n*NODE PRINT"), "*FRICTION", "within a step");
 }
 
 #[test]

@@ -75,11 +75,11 @@ impl Builder<'_> {
             self.report.error(card.at, INTERACTION, message, "rename or remove one");
             return false;
         }
-        let mut node_area = 1.0;
+        let mut node_area = None;
         if card.first_line().is_some() {
             let row = card.single_row("area of each node of a node-based surface", self.report);
             match row.and_then(|row| row.real(0, "area per node", Some(1.0), self.report)) {
-                Some(area) if area > 0.0 => node_area = area,
+                Some(area) if area > 0.0 => node_area = Some(area),
                 Some(area) => {
                     self.report.error(
                         card.at,
