@@ -11,6 +11,7 @@ use overclosure::simulation::{PrepareOptions, PreparedModel};
 use overclosure_protocol::message::{Dialect, OpenRequest, SolverPath};
 
 use super::convert;
+use crate::cli::memory;
 
 /// A prepared model and what the reader and the preparation had to say.
 pub struct SharedModel {
@@ -33,22 +34,26 @@ struct Key {
 type Slot = Arc<Mutex<Weak<SharedModel>>>;
 
 /// Models in use. A model is dropped with its last session.
-#[derive(Default)]
 pub struct Models {
+    /// Bytes that a preparation may take; what is left when it begins unless given.
+    memory_limit: Option<u64>,
     slots: Mutex<HashMap<Key, Slot>>,
     hashers: (RandomState, RandomState),
 }
 
 impl Models {
+    /// No models yet.
+    pub fn new(memory_limit: Option<u64>) -> Self {
+        Self { memory_limit, slots: Mutex::default(), hashers: <(RandomState, RandomState)>::default() }
+    }
+
     /// The model of a deck: the one in use, or a new one. A second session of the same deck waits for the first
-    /// preparation. Errors are the findings about the deck.
     pub fn obtain(&self, request: &OpenRequest) -> Result<Arc<SharedModel>, Vec<Diagnostic>> {
         let key = Key {
             deck: (self.hashers.0.hash_one(&request.deck), self.hashers.1.hash_one(&request.deck), request.deck.len()),
             dialect: request.dialect,
             path: request.path,
             ports_toml: request.ports_toml.clone(),
-            ..PrepareOptions::default()
         };
         let slot = {
             let mut slots = self.slots.lock().unwrap_or_else(PoisonError::into_inner);
@@ -61,7 +66,7 @@ impl Models {
         if let Some(shared) = model.upgrade() {
             return Ok(shared);
         }
-        let shared = Arc::new(prepare(request)?);
+        let shared = Arc::new(prepare(request, self.memory_limit.or_else(memory::available))?);
         *model = Arc::downgrade(&shared);
         Ok(shared)
     }
@@ -77,7 +82,7 @@ fn alive(slot: &Slot) -> bool {
     slot.try_lock().is_ok_and(|model| model.strong_count() > 0)
 }
 
-fn prepare(request: &OpenRequest) -> Result<SharedModel, Vec<Diagnostic>> {
+fn prepare(request: &OpenRequest, memory_limit: Option<u64>) -> Result<SharedModel, Vec<Diagnostic>> {
     let reading = deck::read_text(&request.deck, convert::dialect(request.dialect));
     let mut warnings = reading.diagnostics;
     let Some(model) = reading.model else { return Err(warnings) };
@@ -85,7 +90,7 @@ fn prepare(request: &OpenRequest) -> Result<SharedModel, Vec<Diagnostic>> {
         path: convert::path(request.path),
         threads: request.threads as usize,
         ports_toml: request.ports_toml.clone(),
-        ..PrepareOptions::default()
+        memory_limit,
     };
     match PreparedModel::prepare(model, &options, &mut |phase| tracing::debug!(?phase, "preparing")) {
         Ok(prepared) => {
