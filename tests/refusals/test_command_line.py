@@ -2,6 +2,7 @@
 
 import pytest
 
+import generate_deck
 import support
 
 DECK = support.ROOT / "examples" / "two_blocks.inp"
@@ -35,6 +36,21 @@ def test_a_set_port_replaces_the_magnitude(tmp_path):
     result = support.run(DECK, tmp_path, "--set", "boundary.NTOP.3=-0.01")
     moved = [float(row["U3"]) for row in result.last("nodes")]
     assert moved == [-0.01] * 4
+
+
+def test_a_deck_that_needs_more_memory_than_it_may_is_refused_with_numbers(tmp_path):
+    deck = tmp_path / "punch.inp"
+    generate_deck.generate(["punch", 9, deck])
+    message = refused("run", deck, "--out", tmp_path / "out", "--memory-limit", "1M")
+    assert "FOUNDATION" in message and "1.0 MB may be used" in message
+    assert not (tmp_path / "out").exists()
+    assert support.run(deck, tmp_path / "out", "--memory-limit", "0.5G").summary()["outcome"] == "completed"
+
+
+@pytest.mark.parametrize("size", ["0", "-1G", "4X", "much", "nan", ""])
+def test_a_memory_limit_that_makes_no_sense_is_refused(tmp_path, size):
+    assert "memory-limit" in refused("run", DECK, "--out", tmp_path, f"--memory-limit={size}")
+    assert "memory-limit" in refused("serve", f"--memory-limit={size}")
 
 
 @pytest.mark.parametrize(

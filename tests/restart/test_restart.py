@@ -203,12 +203,14 @@ def snapshot(tmp_path):
     return deck, result.folder / snapshots(result)[0]["file"]
 
 
-def refusal(deck, file, folder, *arguments):
-    """Standard error of a run that must be refused before it writes anything."""
-    done = support.call("run", deck, "--out", folder, "--restart", file, *arguments)
+def refusal(deck, file, folder, *, factors=False):
+    """Standard error of a run that must be refused before it writes anything, and unless told otherwise before it factors."""
+    environment = {**os.environ, "OVERCLOSURE_LOG": "overclosure=debug"}
+    done = support.call("run", deck, "--out", folder, "--restart", file, env=environment)
     assert done.returncode == 2, (done.returncode, done.stderr)
     assert "panicked" not in done.stderr
     assert not folder.exists() or not any(folder.iterdir())
+    assert ("factor" in done.stderr) == factors
     return done.stderr
 
 
@@ -236,7 +238,7 @@ def test_a_snapshot_whose_content_does_not_fit_is_refused(tmp_path, snapshot):
     payload = good[20:] + b"\0"
     forged = tmp_path / "forged.ovck"
     forged.write_bytes(good[:16] + struct.pack("<I", zlib.crc32(payload)) + payload)
-    assert "does not fit" in refusal(deck, forged, tmp_path / "out")
+    assert "does not fit" in refusal(deck, forged, tmp_path / "out", factors=True)
 
 
 def test_a_snapshot_of_another_deck_is_refused(tmp_path, snapshot):

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod law;
+pub mod memory;
 pub mod open;
 pub mod pack;
 pub mod remote;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use overclosure::output::{ResultWriter, StepSummary};
-use overclosure::simulation::{IncrementReport, Simulation, Watch};
+use overclosure::output::{CutbackSummary, ResultWriter, StepSummary};
+use overclosure::simulation::{CutbackReport, IncrementReport, Simulation, Watch};
 
 use super::clock::{Clock, Stage};
 use super::progress::Progress;
@@ -18,16 +18,17 @@ pub struct Monitor<'a> {
     time_end: f64,
     audit: Audit,
     sizes: Sizes,
+    cutbacks: Vec<CutbackSummary>,
 }
 
-/// What a run has left when it is over.
+/// What a run has shown when it is over.
 pub struct Followed {
-    /// To be finished.
-    pub writer: ResultWriter,
     /// Every finding of the audit.
     pub audit: Vec<String>,
     /// Smallest and largest increment of each step.
     pub sizes: Sizes,
+    /// Increments tried in vain.
+    pub cutbacks: Vec<CutbackSummary>,
 }
 
 impl<'a> Monitor<'a> {
@@ -40,12 +41,22 @@ impl<'a> Monitor<'a> {
         time_end: f64,
     ) -> Self {
         progress.stage(Stage::SOLVE);
-        Self { writer, progress, clock, stop, time_end, audit: Audit::default(), sizes: Sizes::default() }
+        Self {
+            writer,
+            progress,
+            clock,
+            stop,
+            time_end,
+            audit: Audit::default(),
+            sizes: Sizes::default(),
+            cutbacks: Vec::new(),
+        }
     }
 
-    /// Nothing is left to follow.
-    pub fn finish(self) -> Followed {
-        Followed { writer: self.writer, audit: self.audit.findings(), sizes: self.sizes }
+    /// The writer, to be finished, and what was seen.
+    pub fn finish(self) -> (ResultWriter, Followed) {
+        let Self { writer, audit, sizes, cutbacks, .. } = self;
+        (writer, Followed { audit: audit.findings(), sizes, cutbacks })
     }
 }
 
@@ -57,6 +68,10 @@ impl Watch for Monitor<'_> {
         self.writer.increment(simulation, report);
         self.clock.enter(solving);
         self.progress.increment(report, report.time / self.time_end);
+    }
+
+    fn cutback(&mut self, _: &Simulation, report: &CutbackReport) {
+        self.cutbacks.push(report.into());
     }
 
     fn cancelled(&self) -> bool {

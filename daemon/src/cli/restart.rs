@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use overclosure::model::{RestartFrequency, RestartRequest};
+use overclosure::model::{Model, RestartFrequency, RestartRequest};
 use overclosure::output::{RestartOrigin, Standing, holds_results};
-use overclosure::simulation::Simulation;
+use overclosure::simulation::{RestoreError, Simulation, check_checkpoint};
 
 use super::{Exit, complain};
 
@@ -32,14 +32,20 @@ impl Restart {
         Ok(Self { file, bytes })
     }
 
+    /// Refuses a snapshot of another deck, a damaged one and one of another version, before anything is factored.
+    pub fn check(&self, model: &Model) -> Result<(), Exit> {
+        check_checkpoint(model, &self.bytes).map_err(|error| self.refused(&error))
+    }
+
+    fn refused(&self, error: &RestoreError) -> Exit {
+        complain(&format!("error: --restart {}: {error}", self.file.display()));
+        Exit::InputWrong
+    }
+
     /// Brings a new simulation to where the snapshot stands, and tells unless it shall be quiet.
     pub fn apply(self, simulation: &mut Simulation, quiet: bool) -> Result<RestartOrigin, Exit> {
-        let Self { file, bytes } = self;
-        let file = file.display().to_string();
-        if let Err(error) = simulation.restore(&bytes) {
-            complain(&format!("error: --restart {file}: {error}"));
-            return Err(Exit::InputWrong);
-        }
+        simulation.restore(&self.bytes).map_err(|error| self.refused(&error))?;
+        let file = self.file.display().to_string();
         let end = simulation.time_end();
         if simulation.check_target(end).is_err() {
             complain(&format!(

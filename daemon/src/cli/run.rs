@@ -16,11 +16,11 @@ use overclosure::port;
 use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Simulation};
 
 use super::clock::{Clock, Stage};
-use super::monitor::{Followed, Monitor, Sizes};
+use super::monitor::{Followed, Monitor};
 use super::open::{open_deck, read_ports, refuse, report};
 use super::progress::Progress;
 use super::restart::{self, Restart};
-use super::{DialectArg, Exit, PathArg, complain, interrupt, settings};
+use super::{DialectArg, Exit, PathArg, complain, interrupt, memory, settings};
 
 /// Arguments of `overclosure run`.
 #[derive(Args)]
@@ -47,6 +47,9 @@ pub struct RunArgs {
     /// Threads; the results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
+    /// Most memory that the preparation may take, e.g. 4G or 800M [default: what the machine, or the control group, has left].
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
+    memory_limit: Option<u64>,
     /// Names and units of ports [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
     #[arg(long, value_name = "FILE")]
     ports: Option<PathBuf>,
@@ -87,7 +90,8 @@ struct Job {
 impl Job {
     /// Everything that can be wrong with the input is found here.
     fn read(arguments: RunArgs) -> Result<Self, Exit> {
-        let RunArgs { deck, out, sets, dialect, path, threads, ports, restart, snapshots, quiet } = arguments;
+        let RunArgs { deck, out, sets, dialect, path, threads, memory_limit, ports, restart, snapshots, quiet } =
+            arguments;
         let stop = interrupt::watch()?;
         let mut clock = Clock::start(Stage::Read);
         let progress = Progress::new(quiet);
@@ -103,7 +107,11 @@ impl Job {
         let ports =
             port::ports_of(&opened.model, ports_toml.as_deref()).map_err(|findings| refuse(&deck, &findings))?;
         let settings = settings::resolve(&assignments, &ports.inputs)?;
-        let options = PrepareOptions { path: path.into(), threads, ports_toml, ..PrepareOptions::default() };
+        if let Some(restart) = &restart {
+            restart.check(&opened.model)?;
+        }
+        let memory_limit = memory_limit.or_else(memory::available);
+        let options = PrepareOptions { path: path.into(), threads, ports_toml, memory_limit };
         let mut diagnostics = opened.diagnostics;
         let prepared = PreparedModel::prepare(opened.model, &options, &mut |phase| {
             let stage = Stage::Phase(phase);
@@ -149,7 +157,7 @@ impl Job {
                 return Err(Exit::OurFailure);
             }
         };
-        let Followed { writer, audit, sizes } = monitor.finish();
+        let (writer, followed) = monitor.finish();
         self.clock.enter(Stage::WRITE);
         self.progress.stage(Stage::WRITE);
         let written = writer.finish(&self.simulation);
@@ -159,7 +167,7 @@ impl Job {
             Ok(snapshots) => (snapshots, Ok(())),
             Err(error) => (Vec::new(), Err(error)),
         };
-        let report = self.report(&ended, audit, &sizes, snapshots);
+        let report = self.report(&ended, followed, snapshots);
         let written = written.and_then(|()| write_report(&self.directory, &self.name, &report));
         ended.tell(&report, self.progress.quiet());
         match written {
@@ -174,7 +182,8 @@ impl Job {
         ResultWriter::create(&self.directory, &self.name, Arc::clone(&self.prepared), self.files)
     }
 
-    fn report(&self, ended: &Ended, audit: Vec<String>, sizes: &Sizes, snapshots: Vec<SnapshotSummary>) -> RunReport {
+    fn report(&self, ended: &Ended, followed: Followed, snapshots: Vec<SnapshotSummary>) -> RunReport {
+        let Followed { audit, sizes, cutbacks } = followed;
         let simulation = &self.simulation;
         let mesh = &self.prepared.model().mesh;
         RunReport {
@@ -193,6 +202,7 @@ impl Job {
             restarted_from: self.origin.clone(),
             inputs_set: self.inputs_set(),
             steps: sizes.enter(simulation.step_reports().into_iter().map(Into::into).collect()),
+            cutbacks,
             snapshots,
             diagnostics: self.diagnostics.iter().map(Finding::from).collect(),
             audit,

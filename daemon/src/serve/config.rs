@@ -45,6 +45,9 @@ pub struct LimitsConfig {
     pub replies_kept: u32,
     /// Threads that one session may ask for. Default: those of the machine; range 1 to 1024.
     pub threads: u32,
+    /// Bytes that the preparation of one model may take. Default: what is left on the machine, or in the control group, when it
+    /// begins; at least 1.
+    pub memory_bytes: Option<u64>,
     /// Seconds without a request after which a session is closed; 0: never. Default 3600, otherwise 0.1 to 31 536 000
     /// (a year).
     pub idle_seconds: f64,
@@ -80,6 +83,7 @@ impl Default for LimitsConfig {
             law_points: 1_000_000,
             replies_kept: 16,
             threads: u32::try_from(threads).unwrap_or(1).min(1024),
+            memory_bytes: None,
             idle_seconds: 3600.0,
         }
     }
@@ -142,6 +146,9 @@ impl Config {
         range("law_points", limits.law_points.into(), 1, 10_000_000);
         range("replies_kept", limits.replies_kept.into(), 1, 1024);
         range("threads", limits.threads.into(), 1, 1024);
+        if limits.memory_bytes == Some(0) {
+            findings.push("limits.memory_bytes = 0: must be at least 1".to_owned());
+        }
         if limits.idle_seconds != 0.0 && !(0.1..=IDLE_SECONDS_MAX).contains(&limits.idle_seconds) {
             findings.push(format!(
                 "limits.idle_seconds = {}: must be 0 (never) or lie between 0.1 and {IDLE_SECONDS_MAX}",
@@ -180,6 +187,8 @@ impl LimitsConfig {
             law_points,
             replies_kept,
             threads,
+            // What a client asks for decides; the refusal names it.
+            memory_bytes: _,
             idle_seconds,
         } = *self;
         Limits {

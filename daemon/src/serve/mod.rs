@@ -28,7 +28,7 @@ use overclosure_protocol::key;
 use tokio::signal::unix::{SignalKind, signal};
 use zenoh::handlers::FifoChannel;
 
-use crate::cli::{Exit, complain, print};
+use crate::cli::{Exit, complain, memory, print};
 use config::Config;
 
 /// Queries that may wait between the transport and the dispatcher, which only routes.
@@ -50,6 +50,7 @@ Configuration file, with the defaults:
   law_points = 1000000
   replies_kept = 16                 # per session, for repeated requests
   threads = 2                       # that one session may ask for; those of the machine unless given
+  memory_bytes = 4000000000         # of one preparation; what is left when it begins unless given
   idle_seconds = 3600.0             # a session without a request for so long is closed; 0: never
   [shutdown]
   drain_seconds = 10.0
@@ -65,6 +66,9 @@ pub struct ServeArgs {
     /// Id of the daemon in its keys; replaces the one of the configuration.
     #[arg(long, value_name = "ID")]
     daemon: Option<String>,
+    /// Most memory that one preparation may take, e.g. 4G; replaces the one of the configuration [default: what is left then].
+    #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
+    memory_limit: Option<u64>,
     /// Folder for session journals. Not available in this version.
     #[arg(long, value_name = "DIR")]
     state_dir: Option<PathBuf>,
@@ -143,12 +147,13 @@ pub fn run(arguments: ServeArgs) -> Exit {
 }
 
 fn configuration(arguments: ServeArgs) -> Result<Config, config::ConfigError> {
-    let ServeArgs { config, listen, daemon, state_dir: _ } = arguments;
+    let ServeArgs { config, listen, daemon, memory_limit, state_dir: _ } = arguments;
     let mut config = config.as_deref().map_or_else(|| Ok(Config::default()), Config::read)?;
     if !listen.is_empty() {
         config.listen = listen;
     }
     config.daemon = daemon.or(config.daemon);
+    config.limits.memory_bytes = memory_limit.or(config.limits.memory_bytes);
     config.validate()?;
     Ok(config)
 }
@@ -166,7 +171,7 @@ async fn serve(config: Config) -> Result<(), ServeError> {
     let shared = Arc::new(Shared {
         id: config.daemon.clone().unwrap_or_else(|| chunk(&random, 0, 8)),
         registry: registry::Registry::new(chunk(&random, 8, 4), config.limits.sessions, config.limits.queue),
-        models: models::Models::default(),
+        models: models::Models::new(config.limits.memory_bytes),
         frames,
         desk,
         threads: Arc::new(()),

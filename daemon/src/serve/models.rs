@@ -48,6 +48,7 @@ impl Models {
     }
 
     /// The model of a deck: the one in use, or a new one. A second session of the same deck waits for the first
+    /// preparation. Errors are the findings about the deck.
     pub fn obtain(&self, request: &OpenRequest) -> Result<Arc<SharedModel>, Vec<Diagnostic>> {
         let key = Key {
             deck: (self.hashers.0.hash_one(&request.deck), self.hashers.1.hash_one(&request.deck), request.deck.len()),

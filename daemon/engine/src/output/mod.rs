@@ -21,7 +21,7 @@ mod vtu;
 mod tests;
 
 pub use file::OutputError;
-pub use report::{Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StepSummary, write_report};
+pub use report::{CutbackSummary, Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StepSummary, write_report};
 pub use snapshots::SnapshotSummary;
 
 pub use crate::restart::Standing;

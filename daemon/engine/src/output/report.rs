@@ -12,7 +12,7 @@ use super::snapshots::SnapshotSummary;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::Dialect;
 use crate::restart::Standing;
-use crate::simulation::{StepReport, WorkCounts};
+use crate::simulation::{CutbackReport, StepReport, WorkCounts};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -49,6 +49,8 @@ pub struct RunReport {
     pub inputs_set: BTreeMap<String, f64>,
     /// Per step begun, in order.
     pub steps: Vec<StepSummary>,
+    /// Increments of this run that were tried in vain, in order.
+    pub cutbacks: Vec<CutbackSummary>,
     /// Snapshots from which a run can go on.
     pub snapshots: Vec<SnapshotSummary>,
     /// Findings about the deck.
@@ -67,6 +69,30 @@ pub struct RestartOrigin {
     /// The last increment that it knows of.
     #[serde(flatten)]
     pub standing: Standing,
+}
+
+/// An increment that was tried in vain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CutbackSummary {
+    /// Step number, from 1.
+    pub step: u32,
+    /// Increment that was tried, from 1.
+    pub increment: u32,
+    /// Attempt that failed, from 1.
+    pub attempt: u32,
+    /// Its size \[time\].
+    pub increment_size: f64,
+    /// Size of the next attempt \[time\].
+    pub next_size: f64,
+    /// Why it failed.
+    pub reason: String,
+}
+
+impl From<&CutbackReport> for CutbackSummary {
+    fn from(report: &CutbackReport) -> Self {
+        let CutbackReport { step, increment, attempt, increment_size, next_size, reason } = report.clone();
+        Self { step, increment, attempt, increment_size, next_size, reason }
+    }
 }
 
 /// Size of a model.
