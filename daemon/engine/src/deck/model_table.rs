@@ -58,6 +58,7 @@ pub const MODEL: &[Keyword] = &[
             P::required("NSET"),
             P::value("ELSET"),
             P::flag("GENERATE"),
+            P::ignored("FREQUENCY", "a set is a definition, not a request for output"),
             P::flag("UNSORTED"),
             P::silent("INTERNAL"),
             P::refused("INSTANCE", FLAT_DECK),

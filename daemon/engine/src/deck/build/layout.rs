@@ -82,6 +82,12 @@ impl<'d> Layout<'d> {
         let model_only =
             matches!(card.keyword.placement, Placement::Model | Placement::Material | Placement::Interaction);
         if in_step {
+            let behind_refused =
+                self.steps.last().and_then(|step| step.cards.last()).is_some_and(|card| is_refused(card));
+            if card.keyword.placement == Placement::Interaction && behind_refused {
+                // *CHANGE FRICTION and *CHANGE SURFACE BEHAVIOR are refused, and this card belongs to them.
+                return;
+            }
             if model_only {
                 return report.error(
                     card.at,
