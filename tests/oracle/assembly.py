@@ -65,6 +65,21 @@ def distributed_forces(deck):
     return forces
 
 
+def node_area(deck, pair, node):
+    """Area of a node of a node-based surface: as given, or by the dialect."""
+    if pair.node_area is not None:
+        return pair.node_area
+    if not deck.full_integration:
+        return 1.0
+    # The CalculiX dialect: a share of every face at the node that belongs to one element only.
+    faces = {}
+    for element, nodes in enumerate(deck.elements):
+        for face, local in enumerate(fe.FACES):
+            faces.setdefault(frozenset(nodes[n] for n in local), []).append((element, face))
+    outer = [owners[0] for members, owners in faces.items() if node in members and len(owners) == 1]
+    return sum(fe.face_integrals(deck.coordinates[n])[0].sum() / 4.0 for n in face_nodes(deck, outer))
+
+
 @dataclass
 class ContactPoints:
     """Contact points pair by pair: rows dh/du, overclosures at zero displacement, areas, pair and normal of each."""
@@ -92,7 +107,7 @@ def contact_points(deck):
                 row[3 * corner : 3 * corner + 3] += weight * normal
             rows.append(row)
             initial.append(-clearance)
-            areas.append((pair.node_area or 1.0) if pair.node_based else tributary[node])
+            areas.append(node_area(deck, pair, node) if pair.node_based else tributary[node])
             pairs.append(index)
             normals.append(normal)
             margins.append(margin)

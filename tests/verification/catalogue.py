@@ -155,6 +155,12 @@ CASES = [
         "1e-9",
     ),
     Case(
+        "invariance",
+        "The solver shall give the same physics wherever a deck stands, however it is turned, and in any units.",
+        "itself: every verification deck, generated and random decks",
+        "1e-9",
+    ),
+    Case(
         "increments",
         "The solver shall reach the same end state in one increment, in 20, and in automatic ones.",
         "itself: the problem is path independent",
