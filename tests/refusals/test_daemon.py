@@ -84,10 +84,10 @@ def test_an_unknown_port_and_an_unknown_field_are_refused_by_name(session):
         ("\x00\x01\x02\n\x03\xff\n", ""),
         (DECK.read_text().replace("SSL, SMA", "SSL, SMB"), "SMB"),
         (DECK.read_text()[:700], ""),
-        (DECK.read_text().replace("NTOP, 1, 2\nNTOP, 3, 3, -0.02", "NBOT, 3, 3, -0.02"), "UPPER"),
+        (DECK.read_text().replace("NTOP, 1, 2\n", "*CLOAD\n15, 1, 1.\n*BOUNDARY\n"), "UPPER"),
         ("*INCLUDE, INPUT=/etc/hostname\n", "*INCLUDE"),
     ],
-    ids=["empty", "cut after nodes", "binary", "unknown surface", "cut in the middle", "unheld body", "include"],
+    ids=["empty", "cut after nodes", "binary", "unknown surface", "cut in the middle", "body pushed away", "include"],
 )
 def test_a_bad_deck_is_refused_with_its_diagnostics(client, deck, word):
     with pytest.raises(overclosure.Fault) as caught:

@@ -113,12 +113,25 @@ REFUSALS = [
 ]
 
 
-# What the mesh alone does not tell: found when the model is prepared.
-UNHELD = [
-    Refusal("body that nothing holds", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "NBOT, 3, 3, -0.02\n", "", ("UPPER",)),
-    Refusal("body held by one node", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "15, 3, 3, -0.02\n", "", ("UPPER", "contact")),
-    Refusal("lower body held by one node", "NBOT, 1, 3\n", "1, 1, 3\n", "", ("LOWER", "contact")),
+# What supports leave free, and what becomes of it: no load along it, or a load that neither supports nor contact balance.
+UNLOADED = [
+    Refusal(
+        "body on another", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "NBOT, 3, 3, -0.02\n", "", ("UPPER", "rotation about 3")
+    ),
+    Refusal("body held by one node", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "15, 3, 3, -0.02\n", "", ("UPPER", "along 1")),
 ]
+LOADED = [
+    Refusal("pivoted body", "NBOT, 1, 3\n", "1, 1, 3\n", "", ("LOWER", "neither supports nor contact")),
+]
+
+
+PUSHED = Refusal(
+    "body pushed sideways",
+    "NTOP, 1, 2\n",
+    "*CLOAD\n15, 1, 1.\n*BOUNDARY\n",
+    "*BOUNDARY",
+    ("UPPER", "neither supports nor contact", "translation along 1"),
+)
 
 
 def changed(refusal):
@@ -149,10 +162,28 @@ def test_refused_with_exit_code_2_and_a_clear_message(write_deck, tmp_path, refu
     assert not list(tmp_path.glob("out/*.csv")), "a refused deck leaves no results"
 
 
-@pytest.mark.parametrize("refusal", UNHELD, ids=lambda r: r.name.replace(" ", "_"))
-def test_a_body_that_can_move_is_refused_by_name(write_deck, tmp_path, refusal):
-    message = read(support.call("run", write_deck(changed(refusal)), "--out", tmp_path / "out", "--quiet"))
-    for word in refusal.words:
+@pytest.mark.parametrize("change", UNLOADED, ids=lambda r: r.name.replace(" ", "_"))
+def test_a_free_body_that_no_load_moves_stays_and_is_named(write_deck, tmp_path, change):
+    done = support.call("run", write_deck(changed(change)), "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 0, done.stderr
+    for word in (*change.words, "stays where it is"):
+        assert word in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize("change", LOADED, ids=lambda r: r.name.replace(" ", "_"))
+def test_a_load_that_nothing_balances_stops_the_run_with_exit_code_3(write_deck, tmp_path, change):
+    done = support.call("run", write_deck(changed(change)), "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 3, (done.returncode, done.stderr)
+    stopped = next(line for line in done.stderr.splitlines() if line.startswith("stopped"))
+    for word in change.words:
+        assert word in stopped, stopped
+
+
+@pytest.mark.parametrize("verb", ["run", "check"])
+def test_a_load_that_no_contact_can_balance_is_refused_before_anything_is_solved(write_deck, tmp_path, verb):
+    arguments = ["--out", tmp_path / "out", "--quiet"] if verb == "run" else []
+    message = read(support.call(verb, write_deck(changed(PUSHED)), *arguments))
+    for word in (PUSHED.keyword, *PUSHED.words):
         assert word in message, message
     assert not list(tmp_path.glob("out/*.csv"))
 
