@@ -3,6 +3,7 @@
 //! ```sh
 //! cargo bench -p overclosure --bench increments               # punch 26
 //! cargo bench -p overclosure --bench increments -- 16 out.json
+//! cargo bench -p overclosure --bench increments -- 26 floating.json force     # contact alone holds the punch
 //! ```
 //!
 //! `stays`: the load moves a little about a loaded state, and no point changes its status. `changes`: a corner of the punch is
@@ -19,10 +20,10 @@ use std::time::Instant;
 use overclosure::deck;
 use overclosure::model::Dialect;
 use overclosure::simulation::{AdvanceOutcome, IncrementReport, PrepareOptions, PreparedModel, Simulation, Watch};
+use punch::Drive;
 use serde_json::{Value, json};
 
 const LINEAR: &str = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n3.5e6";
-const DRIVE: punch::Drive = punch::Drive::Displacement;
 const INCREMENTS: usize = 200;
 /// Points that may change in an increment of the second kind.
 const FEW: std::ops::RangeInclusive<usize> = 1..=10;
@@ -50,6 +51,7 @@ struct Bench {
     simulation: Simulation,
     rest: usize,
     corner: usize,
+    drive: Drive,
     time: f64,
 }
 
@@ -61,13 +63,13 @@ struct Cost {
 }
 
 impl Bench {
-    fn new(n: u32) -> Self {
-        let reading = deck::read_text(&punch::deck(n, LINEAR, DRIVE), Dialect::Calculix);
+    fn new(n: u32, drive: Drive) -> Self {
+        let reading = deck::read_text(&punch::deck(n, LINEAR, drive), Dialect::Calculix);
         let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
         let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {});
         let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
-        let [rest, corner] = DRIVE.inputs().map(|name| prepared.ports().input(name).expect("an input of the deck"));
-        Self { simulation: Simulation::new(prepared), rest, corner, time: 0.0 }
+        let [rest, corner] = drive.inputs().map(|name| prepared.ports().input(name).expect("an input of the deck"));
+        Self { simulation: Simulation::new(prepared), rest, corner, drive, time: 0.0 }
     }
 
     /// One advance to new displacements of the top.
@@ -85,11 +87,11 @@ impl Bench {
 
     /// Increments about a loaded state.
     fn stays(&mut self) -> Vec<Cost> {
-        let corner = 0.5 * DRIVE.full();
-        self.advance(DRIVE.full(), corner);
+        let corner = 0.5 * self.drive.full();
+        self.advance(self.drive.full(), corner);
         let costs = (0..INCREMENTS).map(|i| {
             let share = 1.0 + 1e-5 * (0.1 * i as f64).sin();
-            let cost = self.advance(share * DRIVE.full(), share * corner);
+            let cost = self.advance(share * self.drive.full(), share * corner);
             assert_eq!((cost.seen.increments, cost.seen.changes), (1, 0), "increment {i}: the active set has to stay");
             cost
         });
@@ -99,19 +101,19 @@ impl Bench {
     /// Lifts the corner from the pressed state until it opens no more points, and down again, as often as needed. The size of the
     /// lift follows the number of changes; increments without or with too many changes are not counted.
     fn changes(&mut self) -> Vec<Cost> {
-        let (mut corner, mut lift, mut direction) = (DRIVE.full(), 1e-3, 1.0);
-        self.advance(DRIVE.full(), corner);
+        let (mut corner, mut lift, mut direction) = (self.drive.full(), 1e-3, 1.0);
+        self.advance(self.drive.full(), corner);
         let mut costs = Vec::new();
         for _ in 0..20 * INCREMENTS {
-            corner -= direction * lift * DRIVE.full();
-            let cost = self.advance(DRIVE.full(), corner);
+            corner -= direction * lift * self.drive.full();
+            let cost = self.advance(self.drive.full(), corner);
             let changes = cost.seen.changes;
             if FEW.contains(&changes) {
                 costs.push(cost);
             } else {
                 lift = (if changes == 0 { 1.2 } else { 0.5 } * lift).clamp(LIFT[0], LIFT[1]);
             }
-            let share = corner / DRIVE.full();
+            let share = corner / self.drive.full();
             if share.abs() > 1.0 {
                 direction = share.signum();
             }
@@ -165,9 +167,10 @@ fn main() {
     // cargo adds --bench.
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let n = words.first().map_or(26, |word| word.parse().expect("the size is a whole number"));
-    let mut bench = Bench::new(n);
+    let drive = if words.iter().any(|word| word == "force") { Drive::Force } else { Drive::Displacement };
+    let mut bench = Bench::new(n, drive);
     let points = bench.simulation.prepared().contact_points().len();
-    println!("punch {n}: {points} contact points");
+    println!("punch {n}, driven by {drive:?}: {points} contact points");
     let stays = measure("stays", 5.0, || bench.stays());
     let changes = measure("changes", 50.0, || bench.changes());
     if let Some(path) = words.get(1) {

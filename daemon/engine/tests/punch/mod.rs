@@ -26,7 +26,7 @@ impl Drive {
     pub fn full(self) -> f64 {
         match self {
             Self::Displacement => -0.005,
-            Self::Force => -10.0,
+            Self::Force => -0.2,
         }
     }
 
