@@ -161,6 +161,12 @@ CASES = [
         "1e-9",
     ),
     Case(
+        "paths",
+        "The solver shall give the same figures by the dense and by the sparse path.",
+        "itself: every verification deck, generated and random decks",
+        "1e-10",
+    ),
+    Case(
         "increments",
         "The solver shall reach the same end state in one increment, in 20, and in automatic ones.",
         "itself: the problem is path independent",
