@@ -48,8 +48,11 @@ def labels(positions):
     return [f"{p + 1}," for p in positions]
 
 
-def deck(problem, elements, drive, element_type="C3D8"):
-    """Deck text. `drive`: "approach" prescribes Hertz's approach at the equator, "force" presses it with the force."""
+def deck(problem, elements, drive, element_type="C3D8", gap=0.0, increment=1.0):
+    """Deck text and mesh. `drive`: "approach" prescribes Hertz's approach at the equator, "force" presses it with the force.
+
+    gap: clearance between ball and flat at the start [length]; increment: first increment of the step of length 1.
+    """
     mesh, theory, small = mesh_of(problem, elements), problem.theory(), 1e-9 * problem.radius
     count, bricks = len(mesh.points), len(mesh.bricks)
     lines = ["*HEADING", f"ball on a flat, {elements} elements over the contact radius", "*NODE, NSET=NBALL"]
@@ -57,7 +60,7 @@ def deck(problem, elements, drive, element_type="C3D8"):
     side = 2.0 * REACH * theory.a
     corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)]
     lines.append("*NODE, NSET=NFLAT")
-    box = [(x, y, z) for z in (-side, 0.0) for x, y in corners]
+    box = [(x, y, z) for z in (-side - gap, -gap) for x, y in corners]
     lines += [f"{count + p}, {x!r}, {y!r}, {z!r}" for p, (x, y, z) in enumerate(box, 1)]
     lines.append(f"*ELEMENT, TYPE={element_type}, ELSET=EBALL")
     lines += [f"{e}, " + ", ".join(str(p + 1) for p in nodes) for e, nodes in enumerate(mesh.bricks.tolist(), 1)]
@@ -74,7 +77,7 @@ def deck(problem, elements, drive, element_type="C3D8"):
     lines += ["*SOLID SECTION, ELSET=EBALL, MATERIAL=STEEL", "*SOLID SECTION, ELSET=EFLAT, MATERIAL=STEEL"]
     lines += ["*SURFACE INTERACTION, NAME=HARD", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"]
     lines += ["*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE, SMALL SLIDING", "BALL, FLAT"]
-    lines += ["*BOUNDARY", "XSYM, 1, 1", "YSYM, 2, 2", "NFLAT, 1, 3", "*STEP", "*STATIC", "1., 1."]
+    lines += ["*BOUNDARY", "XSYM, 1, 1", "YSYM, 2, 2", "NFLAT, 1, 3", "*STEP", "*STATIC", f"{increment!r}, 1."]
     if drive == "approach":
         lines += ["*BOUNDARY", f"EQUATOR, 3, 3, {-theory.approach!r}"]
     else:

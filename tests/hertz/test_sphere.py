@@ -18,9 +18,9 @@ def ball(load=1.0):
     return sphere.Ball(inputs["R"], load * inputs["F"], inputs["E"], inputs["nu"])
 
 
-def solve(problem, elements, folder, drive="approach"):
+def solve(problem, elements, folder, drive="approach", **start):
     """Solution of a deck on one mesh."""
-    text, mesh = sphere.deck(problem, elements, drive)
+    text, mesh = sphere.deck(problem, elements, drive, **start)
     deck = folder / f"ball{elements}{drive}.inp"
     deck.write_text(text, encoding="ascii")
     result = support.run(deck, folder)
@@ -113,3 +113,14 @@ def test_c01_under_its_force_the_peak_is_that_of_the_case(tmp_path, elements):
     # The mean of the equator, which the even pressure does not keep plane.
     flats = ball_between_flats(problem.radius, problem.force, problem.young, problem.poisson)
     assert answer.approach == pytest.approx(flats, rel=0.0015)
+
+
+@pytest.mark.parametrize("increment", [1.0, 0.1])
+@pytest.mark.parametrize("gap", [1e-6, 1e-4, -1e-6])
+def test_c01_a_pressed_ball_falls_or_rises_through_any_gap_to_the_same_answer(tmp_path, gap, increment):
+    """Nothing holds the ball until it touches: gaps of half and 45 times the approach, and an overlap of half of it."""
+    touching = solve(ball(), 5, tmp_path, "force")
+    answer = solve(ball(), 5, tmp_path, "force", gap=gap, increment=increment)
+    assert answer.force == pytest.approx(touching.force, rel=1e-9)
+    assert answer.p_max == pytest.approx(touching.p_max, rel=1e-9)
+    assert answer.approach - gap == pytest.approx(touching.approach, rel=1e-9)
