@@ -9,6 +9,7 @@ from . import constraints, fe
 from .constrained import Structure, Unsuitable
 from .deck import Deck, Pair
 from .decks import FOOT_MARGIN, Builder, load, random_law, random_rotation
+from .enumeration import Law
 
 LAYOUTS = ["rest", "stack", "press", "two", "hinge", "corner"]
 POINTS_MAX = 10
@@ -29,7 +30,8 @@ class Scene(Builder):
         self.rough = float(rng.choice([0.0, 0.0, 0.02]))
         self.size = np.array([rng.uniform(1.2, 2.0), rng.uniform(1.0, 1.5), rng.uniform(0.4, 1.0)])
         divisions = tuple(rng.integers(1, 3, 3))
-        numbers = [self.block([0, 0, -self.size[2]], [*self.size[:2], 0], divisions, 0.0, self.rough)]
+        rough = float(rng.choice([self.rough, 0.0]))
+        numbers = [self.block([0, 0, -self.size[2]], [*self.size[:2], 0], divisions, 0.0, rough)]
         self.holders[0] = self.layer(numbers[0], 2, 0)
         if rng.random() < 0.15:
             self.holders[0] = list(numbers[0].values())
@@ -194,7 +196,8 @@ def draw(rng, laws, kind):
     load(rng, deck, 0.3)
     join(rng, deck, scene)
     deck.nodal_forces = {dof: value for dof, value in deck.nodal_forces.items() if dof not in deck.fixed}
-    deck.full_integration = bool(rng.random() < 0.4)
+    # With fully integrated bricks goes the other exponential law of the CalculiX dialect.
+    deck.full_integration = bool(rng.random() < 0.4) and all(isinstance(p.law, Law) for p in deck.pairs)
     deck.increments = int(rng.choice([1, 1, 2, 4]))
     deck.kind = kind
     structure = Structure(deck)

@@ -106,13 +106,15 @@ class Measure:
         moved = max(np.abs(s.displacement).max() for s in states)
         reactions = [np.abs(s.multipliers).max(initial=0.0) for s in states]
         load = np.abs(structure.load(deck.nodal_forces)).max()
+        # Bodies that only move carry forces of rounding, which is small against stiffness times displacement.
+        rounding = 1e-5 * structure.scale * moved
         self.scale = {
             "area": self.points.areas.max(),
-            "force": max(forces, load),
+            "force": max(forces, load, rounding),
             "clearance": max(moved, np.abs(self.points.overclosures).max()),
             "displacement": moved,
-            "reaction": max(*reactions, forces, load),
-            "strain energy": max(self.energy(s.displacement) for s in states),
+            "reaction": max(*reactions, forces, load, rounding),
+            "strain energy": max(*(self.energy(s.displacement) for s in states), rounding * moved),
         }
         self.worst = dict.fromkeys(self.scale, 0.0)
         # Reactions of dofs that only equations hold are nobody's support.
@@ -157,12 +159,13 @@ class Measure:
         reaction = np.zeros(len(displacement))
         reaction[self.structure.prescribed] = -state.multipliers[: len(self.structure.prescribed)]
         self.note("reaction", (found[:, 3:].ravel() - reaction)[self.free_of_equations])
-        self.statuses(state, [row["status"] for row, _ in sorted(zip(points, places, strict=True), key=lambda x: x[1])])
+        statuses = dict(zip(places, (row["status"] for row in points), strict=True))
+        self.statuses(state, -table[:, 1], [statuses[i] for i in range(len(order))])
 
     def displacements(self, state, displacement, overclosures):
         """Displacements and overclosures up to motions that no closed point feels."""
         s = self.structure
-        closed = self.closed(state)
+        closed = state.forces > NEGLIGIBLE * self.scale["force"]
         _, size, turns = np.linalg.svd(s.rows[closed] @ s.motions, full_matrices=True)
         size = np.concatenate([size, np.zeros(len(turns) - len(size))])
         unheld = s.motions @ turns[size <= 1e-9].T
@@ -174,15 +177,10 @@ class Measure:
         if np.abs(displacement).max() > DRIFT_MAX * own + NEGLIGIBLE:
             raise ValueError(f"a motion that nothing holds went {np.abs(displacement).max()}, the rest {own}")
 
-    def closed(self, state):
-        """Points whose overclosure matters: they press, or are hard and touch."""
-        touching = self.hard & (np.abs(state.overclosures) <= NEGLIGIBLE * self.scale["clearance"])
-        return touching | (state.forces > NEGLIGIBLE * self.scale["force"])
-
     def forces(self, state, forces, totals):
         """Contact forces up to what cancels among dependent hard points; pair forces as sums of the point forces."""
         s = self.structure
-        hard = self.hard & self.closed(state)
+        hard = self.hard & (np.abs(state.overclosures) <= NEGLIGIBLE * self.scale["clearance"])
         felt = np.vstack([s.compliance[:, hard] / np.diag(s.compliance).mean(), s.coupling[hard].T])
         _, size, turns = np.linalg.svd(felt, full_matrices=True)
         size = np.concatenate([size, np.zeros(len(turns) - len(size))])
@@ -199,9 +197,9 @@ class Measure:
             name = f"SEC{pair + 1}_PRI{pair + 1}"
             self.note("force", np.array([float(totals[f"CFN{d}[{name}]"]) for d in (1, 2, 3)]) - total)
 
-    def statuses(self, state, statuses):
+    def statuses(self, state, overclosures, statuses):
         """Clear cases only: a point that presses is closed, one with a clearance is open."""
-        for law, force, h, status in zip(self.laws, state.forces, state.overclosures, statuses, strict=True):
+        for law, force, h, status in zip(self.laws, state.forces, overclosures, statuses, strict=True):
             presses = force > 1e-6 * self.scale["force"]
             apart = h < laws.onset(law) - 1e-6 * self.scale["clearance"]
             redundant = laws.is_hard(law) and self.report.redundant
