@@ -61,7 +61,9 @@ fn start_log(command: &Command) {
     let default = match command {
         // The two modules left out warn about settings that are meant, and say again what the verb says itself.
         Command::Serve(_) => "info,zenoh=warn,zenoh::net::routing::hat=error,zenoh::net::runtime::orchestrator=off",
-        Command::Run(_) | Command::Check(_) | Command::Law(_) | Command::Pack(_) | Command::Remote(_) => "error",
+        Command::Run(_) | Command::Check(_) | Command::Law(_) | Command::Pack(_) | Command::Remote(_) => {
+            "error,overclosure=warn"
+        }
     };
     let filter = match std::env::var("OVERCLOSURE_LOG") {
         Err(_) => EnvFilter::new(default),

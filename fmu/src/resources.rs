@@ -15,6 +15,8 @@ pub const OPTIONS_FILE: &str = "options.json";
 pub const DECK_FILE: &str = "deck.inp";
 /// Name of the port selection.
 pub const PORTS_FILE: &str = "ports.toml";
+/// Name of the prepared model.
+pub const PREPARED_FILE: &str = "prepared.ovpm";
 /// Layout version of [`Options`] that this library reads.
 pub const OPTIONS_FORMAT: u32 = 1;
 
@@ -58,6 +60,8 @@ pub struct DeckText {
     pub dialect: Dialect,
     /// Solver path.
     pub path: PathChoice,
+    /// The prepared model, if the FMU carries one.
+    pub prepared: Option<PathBuf>,
 }
 
 impl DeckText {
@@ -133,11 +137,12 @@ pub fn read_options(folder: &Path) -> Result<Options, ResourceError> {
     }
 }
 
-/// Reads the deck and the port selection in a resource folder.
+/// Reads the deck and the port selection in a resource folder, and finds the prepared model.
 pub fn read_deck(folder: &Path, dialect: Dialect, path: PathChoice, ports: bool) -> Result<DeckText, ResourceError> {
     let deck = read(&folder.join(DECK_FILE))?;
     let ports = if ports { Some(read(&folder.join(PORTS_FILE))?) } else { None };
-    Ok(DeckText { deck, ports, dialect, path })
+    let prepared = Some(folder.join(PREPARED_FILE)).filter(|file| file.exists());
+    Ok(DeckText { deck, ports, dialect, path, prepared })
 }
 
 fn read(path: &Path) -> Result<String, ResourceError> {

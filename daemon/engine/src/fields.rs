@@ -4,6 +4,7 @@ use crate::element::{self, Coordinates, connector};
 use crate::model::{Connector, ElementId, NodeId};
 use crate::simulation::{ContactStatus, Field, FieldError, NodalSolution, Simulation};
 use crate::solve::assembly::coordinates;
+use crate::solve::budget::Budget;
 use crate::solve::columns::Column;
 use crate::solve::numbering::NOT_FREE;
 use crate::solve::reactions;
@@ -27,8 +28,10 @@ impl Simulation {
                 }
             }
         }
-        for body in prepared.bodies.iter() {
-            let unknowns = body.recover(coefficients, forces);
+        let budget = Budget::default();
+        let context = prepared.context(&budget);
+        for (body, elements) in prepared.bodies.iter().zip(&prepared.numbering.elements) {
+            let unknowns = body.recover(&context, elements, coefficients, forces);
             for (node, directions) in body.nodes.iter().zip(&body.unknowns) {
                 for (u, &unknown) in displacement[node.index()].iter_mut().zip(directions) {
                     if unknown != NOT_FREE {

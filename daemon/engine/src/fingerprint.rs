@@ -5,10 +5,11 @@ use std::fmt::Write;
 use crate::model::Model;
 
 /// FNV-1a, 64 bits.
-struct Fnv(u64);
+pub struct Fnv(pub u64);
 
 impl Fnv {
-    fn bytes(&mut self, bytes: &[u8]) {
+    /// Takes in some bytes.
+    pub fn bytes(&mut self, bytes: &[u8]) {
         for &b in bytes {
             self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
         }

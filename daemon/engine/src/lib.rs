@@ -13,9 +13,11 @@ pub mod port;
 pub mod simulation;
 
 mod audit;
+mod cache;
 mod examination;
 mod fields;
 mod fingerprint;
+mod kept;
 mod observe;
 mod outputs;
 mod port_config;

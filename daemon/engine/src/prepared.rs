@@ -1,12 +1,15 @@
 //! Preparation: everything that can be computed before the first increment.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::cache;
 use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::element::{Elasticity, connector};
 use crate::examination::{self, Examined};
 use crate::fingerprint::fingerprint;
+use crate::kept::{Kept, Prepared};
 use crate::model::{Connector, ElementId, Equation, Model};
 use crate::outputs::{Outputs, Source};
 use crate::port::PortList;
@@ -68,7 +71,6 @@ impl PreparedModel {
         announce(Phase::Search);
         let Examined { constraints, points, bodies, motions, floating, loading, warnings } =
             examination::examine(&model)?;
-        let mut errors = Vec::new();
         let mut columns = loading.columns.clone();
         let real_columns = columns.len();
         let outputs = Outputs::new(&model, &constraints, &mut columns);
@@ -90,34 +92,27 @@ impl PreparedModel {
         {
             return Err(vec![too_large(&shortage, "the sparse system")]);
         }
-        let results = prepare_bodies(&context, &bodies, &motions, options.threads, condense, announce);
-        announce(Phase::Condense);
-        let (mut prepared, mut contributions) = (Vec::new(), Vec::new());
-        for (b, result) in results.into_iter().enumerate() {
-            match result {
-                Ok((body, contribution)) => {
-                    prepared.push(body);
-                    contributions.push(contribution);
-                }
-                Err(BodyError::NoStiffness { node, direction }) => errors.push(Diagnostic::error(
-                    Place::nowhere(),
-                    "",
-                    format!(
-                        "node {} has no stiffness in direction {}: part of its body can move without resistance",
-                        model.mesh.node_labels[node.index()],
-                        direction + 1
-                    ),
-                    "connect it by whole faces, or hold it by *BOUNDARY",
-                )),
-                Err(BodyError::Memory(shortage)) => {
-                    let name = examination::body_name(&model, &bodies.nodes[b], &bodies.elements[b]);
-                    errors.push(too_large(&shortage, &name));
-                }
+        let fingerprint = fingerprint(&model);
+        let kept = options.cache.as_ref().filter(|_| condense).map(|cache| Kept::new(cache, &context, fingerprint));
+        let stored = kept.as_ref().and_then(|kept| {
+            announce(Phase::Cache);
+            kept.load(&context, &bodies)
+        });
+        let (mut prepared, contributions) = match stored {
+            Some((stored, numbers)) => {
+                budget.take(numbers).map_err(|shortage| vec![too_large(&shortage, "the prepared model")])?;
+                stored
             }
-        }
-        if !errors.is_empty() {
-            return Err(errors);
-        }
+            None => {
+                let computed = compute(&context, &bodies, &motions, options.threads, condense, announce)?;
+                if let Some(kept) = &kept {
+                    announce(Phase::Cache);
+                    kept.store(&computed);
+                }
+                computed
+            }
+        };
+        announce(Phase::Condense);
         let loads = floating.loads(&columns, &bodies, &motions);
         let (condensed, compliance) =
             Condensed::new(&context, &bodies, &prepared, &contributions, &floating, loads, condense);
@@ -166,11 +161,10 @@ impl PreparedModel {
             .collect();
         let load_totals = loading.columns.iter().map(total_force).collect();
         let translates = std::array::from_fn(|d| translates(&model, d));
-        let fingerprint = fingerprint(&model);
         tracing::debug!(
             bodies = prepared.len(),
             unknowns = prepared.iter().map(|b| b.count).sum::<usize>(),
-            factor = prepared.iter().map(Body::factor_size).sum::<usize>(),
+            factor = prepared.iter().filter_map(Body::factor_in_memory).map(|f| f.size().values).sum::<usize>(),
             contact_points = points.len(),
             "prepared"
         );
@@ -248,10 +242,64 @@ impl PreparedModel {
         self.fingerprint
     }
 
+    /// What bodies need to know of the model to recover fields.
+    pub(crate) fn context<'a>(&'a self, budget: &'a Budget) -> Context<'a> {
+        Context {
+            model: &self.model,
+            elasticities: &self.elasticities,
+            constraints: &self.constraints,
+            local: &self.numbering.local,
+            budget,
+            points: &self.points,
+            columns: &self.loading.columns,
+        }
+    }
+
+    /// Where a cache directory keeps this model.
+    pub fn file_in(&self, directory: &Path) -> PathBuf {
+        cache::file_in(directory, self.fingerprint)
+    }
+
     /// Sparse factorisations that the preparation did.
     pub(crate) fn factorizations(&self) -> u32 {
-        self.bodies.iter().filter(|b| b.is_factored()).count() as u32
+        self.bodies.iter().filter(|b| b.was_factored()).count() as u32
     }
+}
+
+/// Computes the bodies; the errors are all there are.
+fn compute(
+    context: &Context<'_>,
+    bodies: &Bodies,
+    motions: &[Motions],
+    threads: usize,
+    condense: bool,
+    announce: &mut dyn FnMut(Phase),
+) -> Result<Prepared, Vec<Diagnostic>> {
+    let (mut prepared, mut contributions, mut errors) = (Vec::new(), Vec::new(), Vec::new());
+    let results = prepare_bodies(context, bodies, motions, threads, condense, announce);
+    for (b, result) in results.into_iter().enumerate() {
+        match result {
+            Ok((body, contribution)) => {
+                prepared.push(body);
+                contributions.push(contribution);
+            }
+            Err(BodyError::NoStiffness { node, direction }) => errors.push(Diagnostic::error(
+                Place::nowhere(),
+                "",
+                format!(
+                    "node {} has no stiffness in direction {}: part of its body can move without resistance",
+                    context.model.mesh.node_labels[node.index()],
+                    direction + 1
+                ),
+                "connect it by whole faces, or hold it by *BOUNDARY",
+            )),
+            Err(BodyError::Memory(shortage)) => {
+                let name = examination::body_name(context.model, &bodies.nodes[b], &bodies.elements[b]);
+                errors.push(too_large(&shortage, &name));
+            }
+        }
+    }
+    if errors.is_empty() { Ok((prepared, contributions)) } else { Err(errors) }
 }
 
 /// A model that does not fit into memory.

@@ -1,5 +1,7 @@
 //! What can be asked of the engine, and how it answers when it cannot comply.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 /// Which solver path to take.
@@ -26,6 +28,18 @@ pub struct PrepareOptions {
     pub memory_limit: Option<u64>,
     /// Text of a `ports.toml`, if any.
     pub ports_toml: Option<String>,
+    /// Where the prepared model may already be, if anywhere. The bits of the result do not depend on it. Models that take the
+    /// sparse path are not kept.
+    pub cache: Option<Cache>,
+}
+
+/// Where prepared models are kept on disk.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cache {
+    /// A directory; a model that it lacks is prepared and put there.
+    Directory(PathBuf),
+    /// One file; it is read and never written.
+    File(PathBuf),
 }
 
 /// Stages of preparation, announced when they begin.
@@ -44,6 +58,8 @@ pub enum Phase {
     Numeric,
     /// Condensation onto the contact points.
     Condense,
+    /// Prepared models on disk.
+    Cache,
     /// Increments.
     Solve,
     /// Writing results.

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args, ValueEnum};
-use overclosure_packer::{DeckRequest, LIBRARY_VARIABLE, PackError, PackReport, find_library, pack_deck, pack_law};
+use overclosure_packer::{
+    Carried, DeckRequest, LIBRARY_VARIABLE, PackError, PackReport, find_library, pack_deck, pack_law,
+};
 
 use super::open::{WHAT_BECOMES_AN_INPUT, count, read_ports, report};
 use super::{DialectArg, Exit, PathArg, complain};
@@ -24,7 +26,7 @@ pub struct PackArgs {
     #[arg(group = "content")]
     deck: Option<PathBuf>,
     /// Pack a pressure-overclosure law instead of a deck.
-    #[arg(long, group = "content", conflicts_with_all = ["ports", "dialect", "path", "backend"])]
+    #[arg(long, group = "content", conflicts_with_all = ["ports", "dialect", "path", "with_prepared", "backend"])]
     law: bool,
     /// The FMU to write; an existing file is replaced.
     #[arg(short, long, value_name = "FILE.fmu")]
@@ -38,6 +40,9 @@ pub struct PackArgs {
     /// Solver path.
     #[arg(long, value_enum, default_value = "auto")]
     path: PathArg,
+    /// Puts the prepared model into the FMU: large, but its instances start at once.
+    #[arg(long)]
+    with_prepared: bool,
     /// Where the solver is.
     #[arg(long, value_enum, default_value = "embedded")]
     backend: BackendArg,
@@ -79,6 +84,7 @@ pub fn run(arguments: PackArgs) -> Exit {
                 ports,
                 dialect: arguments.dialect.into(),
                 path: arguments.path.into(),
+                carried: if arguments.with_prepared { Carried::Prepared } else { Carried::Deck },
                 library,
             })
         }

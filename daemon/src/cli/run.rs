@@ -13,7 +13,7 @@ use overclosure::output::{
     write_report,
 };
 use overclosure::port;
-use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Simulation};
+use overclosure::simulation::{AdvanceOutcome, Cache, PrepareOptions, PreparedModel, Simulation};
 
 use super::clock::{Clock, Stage};
 use super::monitor::{Followed, Monitor};
@@ -53,6 +53,9 @@ pub struct RunArgs {
     /// Names and units of ports [default: DECKNAME.ports.toml or ports.toml beside the deck, if there is one].
     #[arg(long, value_name = "FILE")]
     ports: Option<PathBuf>,
+    /// Takes the prepared model from this directory, or puts it there: the next run of the deck starts at once.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
     /// Goes on from a snapshot of the same deck. The results are those after it, with the bits of a run that never stopped.
     #[arg(long, value_name = "FILE")]
     restart: Option<PathBuf>,
@@ -90,7 +93,7 @@ struct Job {
 impl Job {
     /// Everything that can be wrong with the input is found here.
     fn read(arguments: RunArgs) -> Result<Self, Exit> {
-        let RunArgs { deck, out, sets, dialect, path, threads, memory_limit, ports, restart, snapshots, quiet } =
+        let RunArgs { deck, out, sets, dialect, path, threads, memory_limit, ports, cache, restart, snapshots, quiet } =
             arguments;
         let stop = interrupt::watch()?;
         let mut clock = Clock::start(Stage::Read);
@@ -111,7 +114,8 @@ impl Job {
             restart.check(&opened.model)?;
         }
         let memory_limit = memory_limit.or_else(memory::available);
-        let options = PrepareOptions { path: path.into(), threads, ports_toml, memory_limit };
+        let cache = cache.map(Cache::Directory);
+        let options = PrepareOptions { path: path.into(), threads, ports_toml, memory_limit, cache };
         let mut diagnostics = opened.diagnostics;
         let prepared = PreparedModel::prepare(opened.model, &options, &mut |phase| {
             let stage = Stage::Phase(phase);

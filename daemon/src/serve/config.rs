@@ -1,6 +1,6 @@
 //! Configuration of the daemon: a TOML file, overridden by the command line, validated as a whole.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use overclosure_client::network::check_locator;
@@ -21,6 +21,9 @@ pub struct Config {
     pub listen: Vec<String>,
     /// Id of the daemon in its keys, 1 to 64 letters, digits, `-`, `_`. Default: random, new at every start.
     pub daemon: Option<String>,
+    /// Directory in which prepared models are kept, so that a deck that was open before opens at once. Nothing is ever
+    /// removed from it. Default: none.
+    pub cache: Option<PathBuf>,
     /// Limits.
     pub limits: LimitsConfig,
     /// Shutdown.
@@ -66,6 +69,7 @@ impl Default for Config {
         Self {
             listen: vec![DEFAULT_ENDPOINT.to_owned()],
             daemon: None,
+            cache: None,
             limits: LimitsConfig::default(),
             shutdown: ShutdownConfig::default(),
         }

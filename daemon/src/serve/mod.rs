@@ -42,6 +42,7 @@ const CLOSE_SECONDS_MAX: u64 = 3;
 Configuration file, with the defaults:
   listen = [\"tcp/127.0.0.1:7447\"]   # locators: tcp/HOST:PORT, unixsock-stream/PATH
   daemon = \"press-7\"                # id in the keys; random unless given
+  cache = \"/var/cache/overclosure\"  # folder for prepared models; none unless given
   [limits]
   sessions = 16
   queue = 16                        # requests waiting per session; one more is refused as busy
@@ -69,6 +70,9 @@ pub struct ServeArgs {
     /// Most memory that one preparation may take, e.g. 4G; replaces the one of the configuration [default: what is left then].
     #[arg(long, value_name = "SIZE", value_parser = memory::parse_size)]
     memory_limit: Option<u64>,
+    /// Directory in which prepared models are kept; replaces the one of the configuration.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
     /// Folder for session journals. Not available in this version.
     #[arg(long, value_name = "DIR")]
     state_dir: Option<PathBuf>,
@@ -147,12 +151,13 @@ pub fn run(arguments: ServeArgs) -> Exit {
 }
 
 fn configuration(arguments: ServeArgs) -> Result<Config, config::ConfigError> {
-    let ServeArgs { config, listen, daemon, memory_limit, state_dir: _ } = arguments;
+    let ServeArgs { config, listen, daemon, memory_limit, cache, state_dir: _ } = arguments;
     let mut config = config.as_deref().map_or_else(|| Ok(Config::default()), Config::read)?;
     if !listen.is_empty() {
         config.listen = listen;
     }
     config.daemon = daemon.or(config.daemon);
+    config.cache = cache.or(config.cache);
     config.limits.memory_bytes = memory_limit.or(config.limits.memory_bytes);
     config.validate()?;
     Ok(config)
@@ -171,7 +176,7 @@ async fn serve(config: Config) -> Result<(), ServeError> {
     let shared = Arc::new(Shared {
         id: config.daemon.clone().unwrap_or_else(|| chunk(&random, 0, 8)),
         registry: registry::Registry::new(chunk(&random, 8, 4), config.limits.sessions, config.limits.queue),
-        models: models::Models::new(config.limits.memory_bytes),
+        models: models::Models::new(config.limits.memory_bytes, config.cache.clone()),
         frames,
         desk,
         threads: Arc::new(()),

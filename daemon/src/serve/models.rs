@@ -3,11 +3,12 @@
 use std::collections::HashMap;
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use overclosure::deck;
 use overclosure::diagnostic::Diagnostic;
-use overclosure::simulation::{PrepareOptions, PreparedModel};
+use overclosure::simulation::{Cache, PrepareOptions, PreparedModel};
 use overclosure_protocol::message::{Dialect, OpenRequest, SolverPath};
 
 use super::convert;
@@ -33,18 +34,21 @@ struct Key {
 
 type Slot = Arc<Mutex<Weak<SharedModel>>>;
 
-/// Models in use. A model is dropped with its last session.
+/// Models in use. A model is dropped from memory with its last session.
 pub struct Models {
     /// Bytes that a preparation may take; what is left when it begins unless given.
     memory_limit: Option<u64>,
+    /// Where models are kept on disk, if anywhere.
+    cache: Option<Cache>,
     slots: Mutex<HashMap<Key, Slot>>,
     hashers: (RandomState, RandomState),
 }
 
 impl Models {
     /// No models yet.
-    pub fn new(memory_limit: Option<u64>) -> Self {
-        Self { memory_limit, slots: Mutex::default(), hashers: <(RandomState, RandomState)>::default() }
+    pub fn new(memory_limit: Option<u64>, cache: Option<PathBuf>) -> Self {
+        let cache = cache.map(Cache::Directory);
+        Self { memory_limit, cache, slots: Mutex::default(), hashers: <(RandomState, RandomState)>::default() }
     }
 
     /// The model of a deck: the one in use, or a new one. A second session of the same deck waits for the first
@@ -67,7 +71,7 @@ impl Models {
         if let Some(shared) = model.upgrade() {
             return Ok(shared);
         }
-        let shared = Arc::new(prepare(request, self.memory_limit.or_else(memory::available))?);
+        let shared = Arc::new(prepare(request, self.memory_limit.or_else(memory::available), self.cache.clone())?);
         *model = Arc::downgrade(&shared);
         Ok(shared)
     }
@@ -83,7 +87,11 @@ fn alive(slot: &Slot) -> bool {
     slot.try_lock().is_ok_and(|model| model.strong_count() > 0)
 }
 
-fn prepare(request: &OpenRequest, memory_limit: Option<u64>) -> Result<SharedModel, Vec<Diagnostic>> {
+fn prepare(
+    request: &OpenRequest,
+    memory_limit: Option<u64>,
+    cache: Option<Cache>,
+) -> Result<SharedModel, Vec<Diagnostic>> {
     let reading = deck::read_text(&request.deck, convert::dialect(request.dialect));
     let mut warnings = reading.diagnostics;
     let Some(model) = reading.model else { return Err(warnings) };
@@ -92,6 +100,7 @@ fn prepare(request: &OpenRequest, memory_limit: Option<u64>) -> Result<SharedMod
         threads: request.threads as usize,
         ports_toml: request.ports_toml.clone(),
         memory_limit,
+        cache,
     };
     match PreparedModel::prepare(model, &options, &mut |phase| tracing::debug!(?phase, "preparing")) {
         Ok(prepared) => {

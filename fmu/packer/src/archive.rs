@@ -1,7 +1,9 @@
 //! The archive: sorted entries, fixed time stamps, the library executable. Same content, same bytes.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io::{self, Seek, Write};
+use std::path::PathBuf;
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -14,32 +16,57 @@ pub struct Archive {
 
 #[derive(Debug)]
 struct Entry {
-    bytes: Vec<u8>,
+    content: Content,
     mode: u32,
+}
+
+#[derive(Debug)]
+enum Content {
+    /// Compressed.
+    Bytes(Vec<u8>),
+    /// Copied from a file, as it is: floating-point numbers hardly shrink.
+    File(PathBuf),
 }
 
 impl Archive {
     /// Adds a file that is read.
     pub fn file(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
-        self.entries.insert(name.into(), Entry { bytes: bytes.into(), mode: 0o644 });
+        self.entries.insert(name.into(), Entry { content: Content::Bytes(bytes.into()), mode: 0o644 });
+    }
+
+    /// Adds a large file of numbers that is read; it must last until the archive is written.
+    pub fn numbers(&mut self, name: impl Into<String>, file: PathBuf) {
+        self.entries.insert(name.into(), Entry { content: Content::File(file), mode: 0o644 });
     }
 
     /// Adds a file that is loaded or run.
     pub fn executable(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) {
-        self.entries.insert(name.into(), Entry { bytes: bytes.into(), mode: 0o755 });
+        self.entries.insert(name.into(), Entry { content: Content::Bytes(bytes.into()), mode: 0o755 });
     }
 
     /// Writes everything.
     pub fn write(&self, out: impl Write + Seek) -> io::Result<()> {
         let mut writer = ZipWriter::new(out);
         for (name, entry) in &self.entries {
-            let options = SimpleFileOptions::default()
-                .compression_method(CompressionMethod::Deflated)
-                .last_modified_time(DateTime::DEFAULT)
-                .unix_permissions(entry.mode)
-                .large_file(entry.bytes.len() >= u32::MAX as usize);
-            writer.start_file(name.as_str(), options)?;
-            writer.write_all(&entry.bytes)?;
+            let options = |length: u64, method| {
+                SimpleFileOptions::default()
+                    .compression_method(method)
+                    .last_modified_time(DateTime::DEFAULT)
+                    .unix_permissions(entry.mode)
+                    .large_file(length >= u64::from(u32::MAX))
+            };
+            match &entry.content {
+                Content::Bytes(bytes) => {
+                    writer.start_file(name.as_str(), options(bytes.len() as u64, CompressionMethod::Deflated))?;
+                    writer.write_all(bytes)?;
+                }
+                Content::File(path) => {
+                    let mut file = File::open(path)?;
+                    let length = file.metadata()?.len();
+                    writer.start_file(name.as_str(), options(length, CompressionMethod::Stored))?;
+                    io::copy(&mut file, &mut writer)?;
+                }
+            }
         }
         writer.finish()?.flush()
     }

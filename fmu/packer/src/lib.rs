@@ -19,5 +19,5 @@ mod trial;
 mod units;
 
 pub use library::{LIBRARY_VARIABLE, find_library};
-pub use pack::{DeckRequest, PackError, PackReport, pack_deck, pack_law};
+pub use pack::{Carried, DeckRequest, PackError, PackReport, pack_deck, pack_law};
 pub use trial::TrialError;

@@ -10,10 +10,12 @@ use overclosure::deck;
 use overclosure::diagnostic::Diagnostic;
 use overclosure::law::{Linear, PressureLaw};
 use overclosure::model::{Dialect, Model, Procedure};
-use overclosure::simulation::{AdvanceOutcome, PathChoice, PrepareOptions, PreparedModel, Simulation};
+use overclosure::simulation::{AdvanceOutcome, Cache, PathChoice, PrepareOptions, PreparedModel, Simulation};
 use overclosure_fmu::backend::{deck as deck_backend, law};
 use overclosure_fmu::fingerprint::Fingerprint;
-use overclosure_fmu::resources::{Content, DECK_FILE, OPTIONS_FILE, OPTIONS_FORMAT, Options, PORTS_FILE};
+use overclosure_fmu::resources::{
+    Content, DECK_FILE, OPTIONS_FILE, OPTIONS_FORMAT, Options, PORTS_FILE, PREPARED_FILE,
+};
 use overclosure_fmu::variables::{Causality, Kind, Variable};
 
 use crate::archive::Archive;
@@ -44,8 +46,20 @@ pub struct DeckRequest {
     pub dialect: Dialect,
     /// Solver path.
     pub path: PathChoice,
+    /// What the FMU carries besides the deck.
+    pub carried: Carried,
     /// The FMU library.
     pub library: PathBuf,
+}
+
+/// What a deck FMU carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Carried {
+    /// The deck: small; every first instance prepares the model.
+    #[default]
+    Deck,
+    /// The prepared model too: large, and instances start at once.
+    Prepared,
 }
 
 /// What was packed.
@@ -121,8 +135,21 @@ pub fn pack_deck(request: &DeckRequest) -> Result<PackReport, PackError> {
     let ports = request.ports.clone();
     let experiment = Experiment::of(&model);
     let heading_text = model.heading.clone();
-    let options =
-        PrepareOptions { path: request.path, threads: 1, ports_toml: ports.clone(), ..PrepareOptions::default() };
+    let unwritable = |source| PackError::Write { path: request.output.clone(), source };
+    let kept = match request.carried {
+        Carried::Deck => None,
+        Carried::Prepared => {
+            let draft = tempfile::Builder::new().prefix(".packing-").tempdir_in(folder_of(&request.output));
+            Some(draft.map_err(unwritable)?)
+        }
+    };
+    let options = PrepareOptions {
+        path: request.path,
+        threads: 1,
+        ports_toml: ports.clone(),
+        cache: kept.as_ref().map(|folder| Cache::Directory(folder.path().to_owned())),
+        ..PrepareOptions::default()
+    };
     let prepared = match PreparedModel::prepare(model, &options, &mut |_| {}) {
         Ok(prepared) => Arc::new(prepared),
         Err(errors) => {
@@ -168,7 +195,12 @@ pub fn pack_deck(request: &DeckRequest) -> Result<PackReport, PackError> {
         stop,
         step: experiment.step,
     };
-    let product = Product { heading, page, content, resources, plan };
+    let prepared = kept.as_ref().map(|folder| prepared.file_in(folder.path()));
+    if prepared.as_ref().is_some_and(|file| !file.exists()) {
+        notes.push("the prepared model is not kept on this solver path; the FMU carries the deck alone".into());
+    }
+    let prepared = prepared.filter(|file| file.exists());
+    let product = Product { heading, page, content, resources, prepared, plan };
     let guid = product.build(&request.library, &request.output)?;
     Ok(report(&variables, guid, notes, findings))
 }
@@ -190,7 +222,8 @@ pub fn pack_law(library: &Path, output: &Path) -> Result<PackReport, PackError> 
         stop: 1.0,
         step: 0.01,
     };
-    let product = Product { heading, page, content: Content::Law, resources: Vec::new(), plan: law_plan(&variables) };
+    let plan = law_plan(&variables);
+    let product = Product { heading, page, content: Content::Law, resources: Vec::new(), prepared: None, plan };
     let guid = product.build(library, output)?;
     Ok(report(&variables, guid, Vec::new(), Vec::new()))
 }
@@ -220,6 +253,8 @@ struct Product<'a> {
     page: Page<'a>,
     content: Content,
     resources: Vec<(&'static str, String)>,
+    /// File of the prepared model, if it goes in.
+    prepared: Option<PathBuf>,
     plan: Plan,
 }
 
@@ -230,7 +265,7 @@ impl Product<'_> {
         let unwritable = |source| PackError::Write { path: output.into(), source };
         let guid = self.guid(&code).map_err(unwritable)?;
         let archive = self.archive(&guid, code).map_err(unwritable)?;
-        let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder_of(output);
         let mut draft = tempfile::Builder::new()
             .prefix(".packing-")
             .suffix(".fmu")
@@ -244,7 +279,7 @@ impl Product<'_> {
         Ok(guid)
     }
 
-    /// Of everything that decides what the FMU computes and how it is described.
+    /// Of everything that decides what the FMU computes and how it is described. A prepared model decides neither.
     fn guid(&self, code: &[u8]) -> io::Result<String> {
         let description = description::write(&self.heading, "", self.page.variables)?;
         let mut fingerprint = Fingerprint::default().with(description.as_bytes()).with(&self.options("")?).with(code);
@@ -267,10 +302,18 @@ impl Product<'_> {
         for (name, text) in &self.resources {
             archive.file(format!("resources/{name}"), text.as_str());
         }
+        if let Some(file) = &self.prepared {
+            archive.numbers(format!("resources/{PREPARED_FILE}"), file.clone());
+        }
         documentation::add(&mut archive, &self.page);
         archive.executable(format!("binaries/{PLATFORM}/{}.so", self.heading.identifier), code);
         Ok(archive)
     }
+}
+
+/// Where the FMU is written, and what is needed on the way.
+fn folder_of(output: &Path) -> &Path {
+    output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 fn empty_plan(variables: &[Variable]) -> Plan {

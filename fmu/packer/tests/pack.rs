@@ -4,10 +4,13 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use overclosure::model::Dialect;
-use overclosure::simulation::PathChoice;
-use overclosure_packer::{DeckRequest, PackError, find_library, pack_deck, pack_law};
+use overclosure::simulation::{PathChoice, Simulation};
+use overclosure_fmu::backend::deck::prepare;
+use overclosure_fmu::resources::{PREPARED_FILE, read_deck};
+use overclosure_packer::{Carried, DeckRequest, PackError, find_library, pack_deck, pack_law};
 
 /// The library stands beside the tests, where cargo builds dependencies.
 fn library() -> PathBuf {
@@ -77,6 +80,7 @@ fn request(folder: &tempfile::TempDir) -> DeckRequest {
         ports: None,
         dialect: Dialect::Abaqus,
         path: PathChoice::Auto,
+        carried: Carried::Deck,
         library: library(),
     }
 }
@@ -108,6 +112,27 @@ fn a_deck_with_includes_becomes_one_file() {
     pack_deck(&request).unwrap();
     assert_eq!(first, fs::read(&request.output).unwrap());
     assert_eq!(files(&folder), ["material.inc", "two bricks.inp", "two.fmu"]);
+}
+
+#[test]
+fn an_fmu_with_the_prepared_model_factors_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = request(&folder);
+    let guid = pack_deck(&plain).unwrap().guid;
+    let request = DeckRequest { carried: Carried::Prepared, ..plain };
+    assert_eq!(pack_deck(&request).unwrap().guid, guid, "what it computes is the same");
+    assert_eq!(files(&folder), ["material.inc", "two bricks.inp", "two.fmu"]);
+    let unpacked = tempfile::tempdir().unwrap();
+    zip::ZipArchive::new(fs::File::open(&request.output).unwrap()).unwrap().extract(unpacked.path()).unwrap();
+    let resources = unpacked.path().join("resources");
+    for (prepared, factorizations) in [(true, 0), (false, 2)] {
+        if !prepared {
+            fs::remove_file(resources.join(PREPARED_FILE)).unwrap();
+        }
+        let text = read_deck(&resources, request.dialect, request.path, false).unwrap();
+        let simulation = Simulation::new(Arc::new(prepare(&text).unwrap()));
+        assert_eq!(simulation.step_reports()[0].counts.factorizations, factorizations);
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use overclosure::deck;
 use overclosure::diagnostic::Diagnostic;
 use overclosure::port::{PortList, Quantity};
-use overclosure::simulation::{AdvanceOutcome, PrepareOptions, PreparedModel, Simulation};
+use overclosure::simulation::{AdvanceOutcome, Cache, PrepareOptions, PreparedModel, Simulation};
 use serde::{Deserialize, Serialize};
 
 use super::Backend;
@@ -65,12 +65,17 @@ pub fn prepare_shared(text: &DeckText) -> Result<Arc<PreparedModel>, String> {
     Ok(prepared)
 }
 
-/// Reads and prepares a deck.
+/// Reads and prepares a deck; takes the prepared model of the FMU if there is one.
 pub fn prepare(text: &DeckText) -> Result<PreparedModel, String> {
     let reading = deck::read_text(&text.deck, text.dialect);
     let model = reading.model.ok_or_else(|| quote(&reading.diagnostics))?;
-    let options =
-        PrepareOptions { path: text.path, threads: 1, ports_toml: text.ports.clone(), ..PrepareOptions::default() };
+    let options = PrepareOptions {
+        path: text.path,
+        threads: 1,
+        ports_toml: text.ports.clone(),
+        cache: text.prepared.clone().map(Cache::File),
+        ..PrepareOptions::default()
+    };
     PreparedModel::prepare(model, &options, &mut |_| {}).map_err(|findings| quote(&findings))
 }
 
@@ -238,7 +243,7 @@ mod tests {
              *MATERIAL, NAME=M\n*ELASTIC\n100., 0.\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*BOUNDARY\nBOTTOM,1,3\nTOP,1,2\n\
              *STEP\n*STATIC\n1., 1.\n*BOUNDARY\nTOP,3,3,{pull}\n*NODE PRINT, NSET=TOP\nRF\n*END STEP\n"
         );
-        DeckText { deck, ports: None, dialect: Default::default(), path: Default::default() }
+        DeckText { deck, ports: None, dialect: Default::default(), path: Default::default(), prepared: None }
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub fn choose_path(
 }
 
 /// Contact points that reach free directions of a body.
-fn points_of_body(context: &Context<'_>, bodies: &Bodies, body: usize) -> Vec<u32> {
+pub fn points_of_body(context: &Context<'_>, bodies: &Bodies, body: usize) -> Vec<u32> {
     let touches = |p: &ContactPoint| {
         let mut any = false;
         p.row([1.0; 3], |node, direction, value| {

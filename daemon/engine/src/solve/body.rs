@@ -1,10 +1,13 @@
 //! One elastic body: its factored stiffness, condensed onto the contact points that touch it.
 
+use serde::{Deserialize, Serialize};
+
 use super::assembly::{self, Layout};
 use super::budget::{Shortage, condensed_numbers};
 use super::columns::Column;
 use super::context::Context;
-use super::linear::{Dense, Factor, Symbolic};
+use super::lazy::LazyFactor;
+use super::linear::{Dense, Factor, SingularPivot, Symbolic};
 use super::motions::Motions;
 use super::numbering::{NOT_FREE, NodeGraph, Reach};
 use super::{ordering, reactions};
@@ -12,9 +15,11 @@ use crate::contact::points::ContactPoint;
 use crate::model::NodeId;
 use crate::simulation::Phase;
 
-/// A body, factored. Immutable.
+/// A body, factored. Immutable. What serde skips is known without solving anything.
+#[derive(Serialize, Deserialize)]
 pub struct Body {
     /// Nodes, ascending; positions in this list are body-local node numbers.
+    #[serde(skip)]
     pub nodes: Vec<NodeId>,
     /// Unknown of each direction of each node, or `NOT_FREE`.
     pub unknowns: Vec<[u32; 3]>,
@@ -23,10 +28,12 @@ pub struct Body {
     /// Unknowns that no contact point touches; they come first.
     pub interior: usize,
     /// Factor; none for a body whose every direction is prescribed.
-    factor: Option<Factor>,
+    #[serde(skip)]
+    factor: Option<LazyFactor>,
     /// Contact points with an unknown in this body.
     pub points: Vec<u32>,
     /// Rows of these points on the unknowns; only of a body that is not condensed.
+    #[serde(skip)]
     rows: Option<ContactRows>,
     /// `Y = L_cc⁻¹ B_cᵀ`: retained unknowns x points of this body.
     spread: Dense,
@@ -41,6 +48,7 @@ struct ContactRows {
 }
 
 /// What the rest of the model needs of a body at set-up.
+#[derive(Serialize, Deserialize)]
 pub struct BodyContribution {
     /// `B K⁻¹ Bᵀ`: points x points of this body [length/force].
     pub compliance: Dense,
@@ -117,17 +125,8 @@ impl Body {
             let numbers = symbolic.size().values + 2 * matrix.values.len() + condensed + columns;
             context.budget.take(numbers).map_err(BodyError::Memory)?;
             announce(Phase::Numeric);
-            let factor = Factor::new(&matrix, symbolic).map_err(|pivot| {
-                let (node, direction) = unknowns
-                    .iter()
-                    .enumerate()
-                    .flat_map(|(n, us)| us.iter().enumerate().map(move |(d, &u)| (n, d, u)))
-                    .find(|&(_, _, u)| u as usize == pivot.unknown)
-                    .map(|(n, d, _)| (nodes[n], d))
-                    .expect("every unknown is a direction of a node");
-                BodyError::NoStiffness { node, direction }
-            })?;
-            Some(factor)
+            let factor = Factor::new(&matrix, symbolic).map_err(|pivot| no_stiffness(nodes, &unknowns, pivot))?;
+            Some(LazyFactor::computed(factor))
         };
         drop(matrix);
         announce(Phase::Condense);
@@ -147,6 +146,53 @@ impl Body {
             false => body.keep_rows(context, elements),
         };
         Ok((body, contribution))
+    }
+
+    /// Takes its place in the model after it was read from disk; false if it does not fit there. `factors` are those that
+    /// were not taken yet.
+    pub fn return_to(
+        &mut self,
+        context: &Context<'_>,
+        nodes: &[NodeId],
+        points: &[u32],
+        contribution: &BodyContribution,
+        factors: &mut impl Iterator<Item = LazyFactor>,
+    ) -> bool {
+        let (k, m) = (points.len(), context.columns.len());
+        let retained = self.count.checked_sub(self.interior);
+        let BodyContribution { compliance, slip_compliance, products, prescribed_energy } = contribution;
+        let shapes = [
+            (&self.spread, retained, k),
+            (&self.columns, Some(self.count), m),
+            (compliance, Some(k), k),
+            (slip_compliance, Some(2 * k), k),
+            (products, Some(m), m),
+            (prescribed_energy, Some(m), m),
+        ];
+        let free = self.unknowns.iter().flatten().filter(|&&u| u != NOT_FREE);
+        let numbers = free.clone().count() == self.count && free.clone().all(|&u| (u as usize) < self.count);
+        let fits = self.unknowns.len() == nodes.len()
+            && self.points == points
+            && numbers
+            && shapes.iter().all(|(matrix, rows, columns)| matrix.has_shape(*rows, *columns));
+        self.nodes = nodes.to_vec();
+        self.factor = if self.count == 0 { None } else { factors.next() };
+        fits && self.factor.is_some() == (self.count > 0)
+    }
+
+    /// Factors again, with the bits of the first time: for a body whose factor on disk is lost.
+    fn refactor(&self, context: &Context<'_>, elements: &[u32]) -> Factor {
+        let reach = Reach::new(&context.model.mesh, elements, context.constraints);
+        let graph = NodeGraph::new(&reach, &self.nodes, elements, context.local);
+        // Nodes in the order of their unknowns; those without any have no part in the matrix.
+        let mut order: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        order.sort_by_key(|&node| self.unknowns[node as usize].into_iter().min());
+        let layout =
+            Layout { reach: &reach, graph: &graph, order: &order, unknowns: &self.unknowns, count: self.count };
+        let matrix = assembly::assemble(context, elements, &layout);
+        Factor::new(&matrix, Symbolic::analyse(&matrix)).unwrap_or_else(|pivot| {
+            panic!("a matrix that was factored before has no pivot in unknown {}", pivot.unknown)
+        })
     }
 
     /// Unknowns of this body that a direction of a node belongs to, with the value's share of each.
@@ -199,7 +245,7 @@ impl Body {
     /// Adds what contact forces do to the overclosures (`W F`) and to the tangential displacements (`W_t F`, first tangents,
     /// then second) of a body that is not condensed; an empty slice is not wanted.
     pub fn respond(&self, forces: &[f64], relief: &mut [f64], slip: &mut [f64]) {
-        let (Some(rows), Some(factor)) = (&self.rows, &self.factor) else { return };
+        let (Some(rows), Some(factor)) = (&self.rows, self.factor_in_memory()) else { return };
         if self.points.iter().all(|&p| forces[p as usize] == 0.0) {
             return;
         }
@@ -226,7 +272,7 @@ impl Body {
 
     fn condense(&mut self, context: &Context<'_>, elements: &[u32]) -> BodyContribution {
         let retained = self.count - self.interior;
-        let lower = self.factor.as_ref().map_or_else(Dense::default, |f| f.trailing(self.interior));
+        let lower = self.factor_in_memory().map_or_else(Dense::default, |f| f.trailing(self.interior));
         // Normal rows, dense on the retained unknowns; tangential rows stay sparse.
         let mut spread = Dense::zeros(retained, self.points.len());
         for (column, &p) in self.points.iter().enumerate() {
@@ -279,7 +325,7 @@ impl Body {
             self.spread_over(context, node, direction, force, |u, v| rhs.values[j * self.count + u] -= v);
         });
         let mut solution = rhs.clone();
-        if let Some(factor) = &self.factor {
+        if let Some(factor) = self.factor_in_memory() {
             factor.solve(&mut solution);
         }
         let mut products = Dense::zeros(m, m);
@@ -299,14 +345,16 @@ impl Body {
         self.columns.columns = count;
     }
 
-    /// Unknowns of the body under given column coefficients and contact forces (one per contact point of the model).
-    pub fn recover(&self, coefficients: &[f64], forces: &[f64]) -> Vec<f64> {
+    /// Unknowns of the body under given column coefficients and contact forces (one per contact point of the model). The
+    /// first time after a start from disk, the factor is read.
+    pub fn recover(&self, context: &Context<'_>, elements: &[u32], coefficients: &[f64], forces: &[f64]) -> Vec<f64> {
+        let factor = self.factor.as_ref().map(|factor| factor.get(self.count, || self.refactor(context, elements)));
         let mut contact = Dense::zeros(self.count, 1);
         if let Some(rows) = &self.rows {
             for (row, &p) in rows.normals.iter().zip(&self.points) {
                 row.iter().for_each(|&(i, v)| contact.values[i as usize] -= v * forces[p as usize]);
             }
-            if let Some(factor) = &self.factor {
+            if let Some(factor) = factor {
                 factor.solve(&mut contact);
             }
             self.columns.multiply_add(coefficients, &mut contact.values);
@@ -321,22 +369,30 @@ impl Body {
                 }
             }
         }
-        if let Some(factor) = &self.factor {
+        if let Some(factor) = factor {
             factor.solve_transposed(&mut contact);
         }
         self.columns.multiply_add(coefficients, &mut contact.values);
         contact.values
     }
 
-    /// Numbers held by the factor.
-    pub fn factor_size(&self) -> usize {
-        self.factor.as_ref().map_or(0, |f| f.size().values)
+    /// The factor, unless it is on disk or there is none.
+    pub fn factor_in_memory(&self) -> Option<&Factor> {
+        self.factor.as_ref().and_then(LazyFactor::in_memory)
     }
 
-    /// Whether a factorisation was needed.
-    pub fn is_factored(&self) -> bool {
-        self.factor.is_some()
+    /// Whether a factorisation was done to prepare this body.
+    pub fn was_factored(&self) -> bool {
+        self.factor.as_ref().is_some_and(LazyFactor::was_computed)
     }
+}
+
+/// The direction of a node that an unknown without a pivot is.
+fn no_stiffness(nodes: &[NodeId], unknowns: &[[u32; 3]], pivot: SingularPivot) -> BodyError {
+    let mut all = unknowns.iter().enumerate().flat_map(|(n, us)| us.iter().enumerate().map(move |(d, &u)| (n, d, u)));
+    let (node, direction, _) =
+        all.find(|&(_, _, u)| u as usize == pivot.unknown).expect("every unknown is a direction of a node");
+    BodyError::NoStiffness { node: nodes[node], direction }
 }
 
 /// Body-local nodes that the rows of contact points reach, ascending.

@@ -10,6 +10,7 @@ pub mod constraints;
 pub mod contact;
 pub mod context;
 pub mod floating;
+pub mod lazy;
 pub mod linear;
 pub mod motions;
 pub mod numbering;

@@ -1,8 +1,10 @@
 //! Where the numbers of a sparse factor are.
 
+use serde::{Deserialize, Serialize};
+
 /// Where the blocks of L are. A supernode is a run of columns with one pattern below them; its block is dense and
 /// column-major, the rows of its own columns first (their strict upper triangle means nothing), then the pattern.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Blocks {
     /// First unknown of each supernode, then the number of unknowns.
     pub starts: Vec<usize>,
@@ -116,5 +118,26 @@ impl Blocks {
     /// The supernode of an unknown.
     pub fn supernode_of(&self, unknown: usize) -> usize {
         self.starts.partition_point(|&start| start <= unknown) - 1
+    }
+
+    /// Whether starts, patterns and values fit together, for this many values: what a file must keep.
+    pub fn is_consistent(&self, values: usize) -> bool {
+        let count = self.starts.len();
+        let ends = |starts: &[usize], end: usize| {
+            starts.len() == count && starts[0] == 0 && starts.is_sorted() && starts[count - 1] == end
+        };
+        if count == 0 || !ends(&self.starts, self.starts[count - 1]) || !ends(&self.pattern_starts, self.pattern.len())
+        {
+            return false;
+        }
+        let n = self.unknowns();
+        ends(&self.value_starts, values)
+            && (0..self.len()).all(|s| {
+                let (width, end) = (self.width(s), self.starts[s + 1]);
+                let pattern = self.pattern(s);
+                let inside = pattern.iter().all(|&row| (end..n).contains(&(row as usize)));
+                let size = self.value_starts[s + 1] - self.value_starts[s];
+                inside && pattern.is_sorted() && Some(size) == width.checked_mul(width + pattern.len())
+            })
     }
 }

@@ -6,10 +6,12 @@ use faer::linalg::triangular_solve;
 use faer::reborrow::ReborrowMut;
 use faer::{Accum, MatMut, MatRef, Par};
 
+use serde::{Deserialize, Serialize};
+
 use super::PIVOT_RELATIVE_MIN;
 
 /// Dense column-major matrix.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dense {
     /// Number of rows.
     pub rows: usize,
@@ -23,6 +25,11 @@ impl Dense {
     /// A matrix of zeros.
     pub fn zeros(rows: usize, columns: usize) -> Self {
         Self { rows, columns, values: vec![0.0; rows * columns] }
+    }
+
+    /// Whether it has as many rows and columns, and the numbers for them.
+    pub fn has_shape(&self, rows: Option<usize>, columns: usize) -> bool {
+        Some(self.rows) == rows && self.columns == columns && self.values.len() == self.rows * columns
     }
 
     /// One column.

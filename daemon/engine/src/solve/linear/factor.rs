@@ -18,6 +18,21 @@ impl Factor {
         Ok(Self { blocks: symbolic.blocks, values })
     }
 
+    /// A factor from its parts; none if they do not fit together.
+    pub fn from_parts(blocks: Blocks, values: Vec<f64>) -> Option<Self> {
+        blocks.is_consistent(values.len()).then_some(Self { blocks, values })
+    }
+
+    /// Where the numbers of L are.
+    pub fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// The numbers of L.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Numbers held.
     pub fn size(&self) -> FactorSize {
         FactorSize { values: self.values.len() }

@@ -11,6 +11,7 @@ mod symbolic;
 #[cfg(test)]
 mod tests;
 
+pub use blocks::Blocks;
 pub use dense::{Dense, DenseScratch, cholesky_in_place, cholesky_solve, eigen};
 pub use factor::Factor;
 pub use symbolic::{FactorSize, Symbolic};

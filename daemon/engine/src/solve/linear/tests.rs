@@ -235,11 +235,11 @@ fn supernodes_in_parts_give_the_same_factor() {
     for width_max in [1, 2, 3, 7, 30, 64, 200] {
         let blocks = whole.cut(width_max);
         assert!((0..blocks.len()).all(|s| blocks.width(s) <= width_max));
-        assert_eq!(blocks.unknowns(), n);
+        assert!(blocks.is_consistent(blocks.values()) && blocks.unknowns() == n);
         assert!(width_max >= 30 || blocks.values() < whole.values());
         let mut values = vec![0.0; blocks.values()];
         numeric::factor(&sample.lower, &blocks, &mut values).expect("positive definite");
-        let factor = Factor { blocks, values };
+        let factor = Factor::from_parts(blocks, values).expect("consistent");
         let mut x = rhs.clone();
         factor.solve(&mut x);
         assert_close(&x.values, &expected.values, 1e-12, &format!("width {width_max}"));
@@ -250,4 +250,27 @@ fn supernodes_in_parts_give_the_same_factor() {
             "trailing",
         );
     }
+}
+
+#[test]
+fn parts_that_do_not_fit_are_no_factor() {
+    let sample = Sample::arrow(30);
+    let (blocks, values) = {
+        let f = sample.factor();
+        (f.blocks.clone(), f.values)
+    };
+    let refuses = |change: &dyn Fn(&mut Blocks, &mut Vec<f64>)| {
+        let (mut blocks, mut values) = (blocks.clone(), values.clone());
+        change(&mut blocks, &mut values);
+        Factor::from_parts(blocks, values).is_none()
+    };
+    assert!(!refuses(&|_, _| {}));
+    assert!(refuses(&|_, v| v.truncate(v.len() - 1)));
+    assert!(refuses(&|b, _| b.starts.clear()));
+    assert!(refuses(&|b, _| *b.starts.last_mut().expect("not empty") += 1));
+    assert!(refuses(&|b, _| b.pattern[0] = 30));
+    assert!(refuses(&|b, _| b.pattern[0] = 0));
+    assert!(refuses(&|b, _| b.pattern.truncate(b.pattern.len() - 1)));
+    assert!(refuses(&|b, _| b.value_starts[1] += 1));
+    assert!(refuses(&|b, _| b.pattern_starts[1] = 1000));
 }
