@@ -96,16 +96,19 @@ def against_calculix(folder, decks, repetitions, ccx):
         # CalculiX loses contact of the cylinder under SMALL SLIDING (its force is a third too small), and solves less for it.
         # Its finite sliding meets ours; we read the deck alike either way.
         deck.write_text(deck.read_text().replace(", SMALL SLIDING", ""))
-        ours, theirs = {"calculix": Usage(), "abaqus": Usage()}, Usage()
+        ours, theirs, split = {"calculix": Usage(), "abaqus": Usage()}, Usage(), []
         for _ in range(repetitions):
             for dialect, usage in ours.items():
                 out = folder / dialect
                 command = [support.binary(), "run", deck, "--out", out, "--quiet", "--dialect", dialect]
                 measure(usage, command, folder, folder / f"{job}-{dialect}.log")
+            split.append(phases(folder / "calculix", job))
             if ccx:
                 measure(theirs, [ccx, "-i", job], folder, folder / f"{job}-ccx.log")
         row = {"deck": job, "wanted": wanted, "memory_wanted": memory_wanted}
-        row |= {"force": our_total(folder / "calculix", job), "phases": phases(folder / "calculix", job)}
+        row |= {"force": our_total(folder / "calculix", job)}
+        # Wall time: the run that others on the machine disturbed least.
+        row |= {"phases": min(split, key=lambda seconds: sum(seconds.values()))}
         row |= {f"{dialect}_cpu": usage.median() for dialect, usage in ours.items()}
         row |= {"memory": ours["calculix"].peak(), "spread": ours["calculix"].spread()}
         if ccx:
@@ -149,7 +152,7 @@ def markdown(rows, further, machine):
         lines.append(
             "| " + " | ".join([r["deck"], ours, *theirs, f"{r['wanted']:.0f}", f"{r['abaqus_cpu']:.2f}", *pairs]) + " |"
         )
-    lines += ["", "Wall seconds of ours by phase, read as CalculiX does, last run:", ""]
+    lines += ["", "Wall seconds of ours by phase, read as CalculiX does, in the shortest run:", ""]
     lines += ["| deck | " + " | ".join(PHASES) + " |", "|---" * (1 + len(PHASES)) + "|"]
     for r in rows:
         lines.append("| " + " | ".join([r["deck"], *(f"{r['phases'].get(phase, 0.0):.3f}" for phase in PHASES)]) + " |")

@@ -81,8 +81,9 @@ def markdown(rows, found):
         cells += [f"{row['cpu_seconds']:.2f}", f"{row['peak_megabytes']:.0f}"]
         cells += [f"{row['wall_seconds'].get(phase, 0.0):.3f}" for phase in phases(rows)]
         lines.append("| " + " | ".join(cells) + " |")
-    cells = ["" if value is None else f"{value:.2f}" for value in found.values()]
-    lines.append("| exponent | | | " + " | ".join(cells) + " |")
+    for name, values in (("exponent", found), ("of the two largest", exponents(rows[-2:]))):
+        cells = ["" if values[key] is None else f"{values[key]:.2f}" for key in found]
+        lines.append(f"| {name} | | | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -131,7 +132,12 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     report = markdown(rows, found)
     (options.out / "growth.md").write_text(report, encoding="utf-8")
-    content = {"machine": bench.processor(), "rows": rows, "exponents": found}
+    content = {
+        "machine": bench.processor(),
+        "rows": rows,
+        "exponents": found,
+        "exponents_largest": exponents(rows[-2:]),
+    }
     (options.out / "growth.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     draw(rows, found, options.out / "growth.png")
     print(report)
