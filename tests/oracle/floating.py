@@ -169,9 +169,10 @@ def balance(rng, structure, scene, load, nodes):
     contact = rng.uniform(0.1, 1.0, count) * (rng.random(count) < 0.8)
     motions = structure.motions
     wanted = motions.T @ (structure.rows.T @ contact - load)
-    dofs = [3 * n + d for n in nodes for d in range(3)]
+    # Blocks of a hinge may share a node.
+    dofs = [3 * n + d for n in dict.fromkeys(nodes) for d in range(3)]
     forces = np.linalg.lstsq(motions[dofs].T, wanted, rcond=1e-10)[0]
-    if wanted.size and np.abs(motions[dofs].T @ forces - wanted).max() > 1e-12 * max(1.0, np.abs(wanted).max()):
+    if wanted.size and np.abs(motions[dofs].T @ forces - wanted).max() > 1e-12 * np.abs(wanted).max():
         raise Unsuitable("the chosen nodes cannot balance the load")
     return dict(zip(dofs, forces.tolist(), strict=True))
 

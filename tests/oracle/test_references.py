@@ -28,12 +28,10 @@ def test_enumeration_finds_the_state_that_switching_finds():
     """Where there are few states, the first that keeps all conditions is the same state."""
     compared = 0
     for seed in range(60):
-        deck, structure = random_deck(seed, laws=("hard", "linear", "tabular"))
+        deck, structure = random_deck(seed, laws=("hard", "linear"))
         contact = Contact(structure, structure.load(deck.nodal_forces), deck.fixed)
-        if (
-            len(structure.rows) > 6
-            or (state := contact.switching(contact.smoothed_guess(1e-3 / contact.weight))) is None
-        ):
+        state = contact.switching(contact.smoothed_guess(1e-3 / contact.weight))
+        if len(structure.rows) > 8 or state is None:
             continue
         other = contact.enumeration()
         nodal = structure.rows.T @ (other.forces - state.forces)
