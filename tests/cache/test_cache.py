@@ -53,6 +53,14 @@ def test_a_damaged_model_is_said_and_does_no_harm(tmp_path, punch, place):
     assert files(support.Result(tmp_path / "again", "punch")) == files(plain)
 
 
+def test_a_model_on_the_sparse_path_is_not_kept_and_that_is_said(tmp_path, punch):
+    models = tmp_path / "models"
+    done = support.call("run", punch, "--out", tmp_path / "out", "--quiet", "--path", "sparse", "--cache", models)
+    assert done.returncode == 0
+    assert "sparse path" in done.stderr
+    assert not models.exists()
+
+
 def test_two_sessions_of_a_deck_hold_one_copy(tmp_path):
     deck = tmp_path / "punch.inp"
     generate_deck.generate(["punch", "12", str(deck)])

@@ -93,6 +93,9 @@ impl PreparedModel {
             return Err(vec![too_large(&shortage, "the sparse system")]);
         }
         let fingerprint = fingerprint(&model);
+        if options.cache.is_some() && !condense {
+            tracing::warn!("the model takes the sparse path, so it is neither taken from disk nor kept there");
+        }
         let kept = options.cache.as_ref().filter(|_| condense).map(|cache| Kept::new(cache, &context, fingerprint));
         let stored = kept.as_ref().and_then(|kept| {
             announce(Phase::Cache);
