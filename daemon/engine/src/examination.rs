@@ -5,7 +5,8 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::model::{Model, NodeId};
 use crate::procedure::loading::Loading;
 use crate::solve::constraints::Constraints;
-use crate::solve::floating::Floating;
+use crate::solve::floating::{Floating, LOAD_ROUNDING};
+use crate::solve::linear::Dense;
 use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
 use crate::solve::parts::Sample;
@@ -30,14 +31,14 @@ pub struct Examined {
 
 /// Examines a validated model; the errors are all there are.
 pub fn examine(model: &Model) -> Result<Examined, Vec<Diagnostic>> {
-    let constraints = Constraints::new(model);
     let (points, mut warnings) = points::find(model);
+    let constraints = Constraints::new(model, points.iter().map(|p| p.node));
     let contact_nodes = points.iter().map(|p| p.node).filter(|&n| !constraints.is_fixed(n));
     let bodies = Bodies::find(model, contact_nodes);
     let mut motions: Vec<Motions> = (bodies.nodes.iter().zip(&bodies.elements))
         .map(|(nodes, elements)| Motions::find(model, &constraints, nodes, elements, &bodies.local))
         .collect();
-    let floating = Floating::new(model, &points, &bodies, &mut motions);
+    let floating = Floating::new(model, &constraints, &points, &bodies, &mut motions);
     warnings.extend(unreachable_loads(model, &bodies));
     let mut loading = Loading::new(model)?;
     constraints.extend(&mut loading.columns);
@@ -60,7 +61,18 @@ fn unheld(
     loading: &Loading,
 ) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let (mut errors, mut warnings) = (Vec::new(), Vec::new());
-    let loads = floating.loads(&loading.columns, bodies, motions).loads;
+    let loads = floating.loads(&loading.columns, bodies, motions);
+    let ends = loading.step_ends(model);
+    // What the lines of the deck do together at the end of a step counts: one may balance another.
+    let acts = |m: usize| {
+        ends.iter().any(|coefficients| {
+            let terms = |d: &Dense, abs: bool| -> f64 {
+                let term = |(j, a): (usize, &f64)| if abs { (a * d.column(j)[m]).abs() } else { a * d.column(j)[m] };
+                coefficients.iter().enumerate().map(term).sum()
+            };
+            terms(&loads.loads, false).abs() > LOAD_ROUNDING * terms(&loads.scales, true)
+        })
+    };
     for (b, of_body) in motions.iter().enumerate() {
         let first = floating.offsets[b];
         let (mut loaded, mut idle): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
@@ -72,7 +84,7 @@ fn unheld(
                 Sample::Element(_) => words,
                 Sample::Node(node) => format!("{words} of node {}", model.mesh.node_labels[node.index()]),
             };
-            if (0..loading.columns.len()).any(|j| loads.column(j)[first + m] != 0.0) {
+            if acts(first + m) {
                 loaded.push(said);
             } else if matches!(sample, Sample::Element(_)) {
                 // A lone node that nothing loads and nothing resists just stays.

@@ -69,7 +69,7 @@ pub struct Outputs {
 /// Inputs and outputs of a validated model as `ports.toml` declares them, without preparing it. Errors are those of the
 /// declarations: ports that the deck does not have, names that clash, text that is no TOML.
 pub fn ports_of(model: &Model, ports_toml: Option<&str>) -> Result<PortList, Vec<Diagnostic>> {
-    let outputs = Outputs::new(model, &Constraints::new(model), &mut Vec::new());
+    let outputs = Outputs::new(model, &Constraints::new(model, std::iter::empty()), &mut Vec::new());
     declared(inputs_of(model), &outputs, ports_toml).map(|(ports, _)| ports)
 }
 

@@ -26,6 +26,7 @@ use crate::solve::constraints::Constraints;
 use crate::solve::contact::{ContactSystem, PointBehavior, Structure, initial_springs};
 use crate::solve::context::Context;
 use crate::solve::floating::Floating;
+use crate::solve::loose::Loose;
 use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
 use crate::solve::parts::Sample;
@@ -49,6 +50,7 @@ pub struct PreparedModel {
     pub(crate) support_elements: Vec<u32>,
     pub(crate) condensed: Condensed,
     pub(crate) contact: ContactSystem,
+    pub(crate) loose: Loose,
     /// Columns that carry loads; the rest only measure.
     pub(crate) real_columns: usize,
     /// Selected output ports' sources.
@@ -75,6 +77,8 @@ impl PreparedModel {
         let real_columns = columns.len();
         let outputs = Outputs::new(&model, &constraints, &mut columns);
         constraints.extend(&mut columns[real_columns..]);
+        let first_loose = columns.len();
+        columns.extend(floating.loose_columns(&constraints, &bodies, &motions));
         let elasticities = elasticities(&model);
         let budget = Budget::new(options.memory_limit);
         let context = Context {
@@ -122,6 +126,7 @@ impl PreparedModel {
         for body in &mut prepared {
             body.keep_columns(real_columns);
         }
+        let loose = Loose::new(&floating.loose, first_loose, &condensed);
         let prepared = Arc::new(prepared);
         let structure = match coupled {
             None => Structure::Dense(compliance),
@@ -187,6 +192,7 @@ impl PreparedModel {
             support_elements,
             condensed,
             contact,
+            loose,
             real_columns,
             sources,
             outputs,

@@ -214,6 +214,24 @@ impl Loading {
     }
 }
 
+impl Loading {
+    /// Coefficients of the columns at the end of every step, as the deck has them.
+    pub fn step_ends(&self, model: &Model) -> Vec<Vec<f64>> {
+        let mut ends: Vec<Vec<f64>> = Vec::with_capacity(self.courses.len());
+        let mut begun = 0.0;
+        for (s, courses) in self.courses.iter().enumerate() {
+            let Procedure::Static(control) = &model.steps[s].procedure;
+            let value = |(j, course): (usize, &Course)| {
+                let start = ends.last().map_or(0.0, |last| last[j]);
+                value_at(model, *course, s, start, begun, control.period)
+            };
+            ends.push(courses.iter().enumerate().map(value).collect());
+            begun += control.period;
+        }
+        ends
+    }
+}
+
 /// Each prescribed direction follows one column; a node named twice in a set counts once.
 fn merge_last(entries: Vec<(NodeId, u8, f64)>) -> Vec<(NodeId, u8, f64)> {
     let mut merged = merge(entries);

@@ -188,6 +188,10 @@ impl Simulation {
                 return Err(Failure::Solve(failure));
             }
         };
+        if !prepared.loose.is_empty() {
+            prepared.loose.settle(&prepared.condensed, &coefficients, &work.forces, &mut work.motions);
+            prepared.contact.overclosures(&work.free, &work.relief, &work.motions, &mut work.overclosures);
+        }
         let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
         prepared.condensed.tangential(&prepared.contact, response, &mut work.scratch, &mut work.tangential);
         let n = prepared.points.len();

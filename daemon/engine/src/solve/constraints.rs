@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::columns::{Column, merge};
-use crate::model::{Model, NodeId};
+use crate::model::{Connector, ElementId, ElementKind, LoadKind, Model, NodeId};
 
 /// A direction of a node with a factor.
 pub type Term = (NodeId, u8, f64);
@@ -17,13 +17,16 @@ pub struct Constraints {
     prescribed: Vec<u8>,
     /// Bit d of a node: direction d depends on others.
     dependent: Vec<u8>,
+    /// Bit d of a node: nothing resists direction d and nothing acts along it.
+    inert: Vec<u8>,
     /// Dependent directions on independent ones, chains resolved; sorted, each direction at most once.
     expansions: FxHashMap<(NodeId, u8), Vec<Term>>,
 }
 
 impl Constraints {
-    /// Collects the prescribed directions of the model part and of all steps, and resolves the equations.
-    pub fn new(model: &Model) -> Self {
+    /// Collects the prescribed directions of the model part and of all steps, and resolves the equations; `contact_nodes` are
+    /// those that contact may push.
+    pub fn new(model: &Model, contact_nodes: impl Iterator<Item = NodeId>) -> Self {
         let mut prescribed = vec![0u8; model.mesh.nodes.len()];
         let lines = model.initial_boundaries.iter().chain(model.steps.iter().flat_map(|s| &s.boundaries));
         for line in lines {
@@ -44,7 +47,8 @@ impl Constraints {
                 resolve((node, direction), &direct, &mut expansions);
             }
         }
-        Self { prescribed, dependent, expansions }
+        let inert = touched(model, contact_nodes).iter().map(|t| 7 & !t).collect();
+        Self { prescribed, dependent, inert, expansions }
     }
 
     /// Whether a direction (0..3) of a node is prescribed.
@@ -52,9 +56,10 @@ impl Constraints {
         self.prescribed[node.index()] & (1 << direction) != 0
     }
 
-    /// Whether a direction is neither prescribed nor dependent.
+    /// Whether a direction is an unknown: neither prescribed nor dependent, and something resists or pushes it.
     pub fn is_free(&self, node: NodeId, direction: usize) -> bool {
-        (self.prescribed[node.index()] | self.dependent[node.index()]) & (1 << direction) == 0
+        let node = node.index();
+        (self.prescribed[node] | self.dependent[node] | self.inert[node]) & (1 << direction) == 0
     }
 
     /// Whether every direction of a node is prescribed.
@@ -112,6 +117,31 @@ impl Constraints {
     }
 }
 
+/// Bit d of a node: an element, an equation, a load or contact acts along direction d.
+fn touched(model: &Model, contact_nodes: impl Iterator<Item = NodeId>) -> Vec<u8> {
+    let mesh = &model.mesh;
+    let mut touched = vec![0u8; mesh.nodes.len()];
+    contact_nodes.for_each(|n| touched[n.index()] = 7);
+    for (e, (kind, nodes)) in mesh.elements.iter().enumerate() {
+        let section = mesh.connectors.get(&ElementId(e as u32));
+        match (kind, section) {
+            (ElementKind::Spring1 | ElementKind::Spring2, Some(Connector::Spring { directions, .. })) => {
+                nodes.iter().zip(directions).for_each(|(n, d)| touched[n.index()] |= 1 << d);
+            }
+            _ => nodes.iter().for_each(|n| touched[n.index()] = 7),
+        }
+    }
+    for &(node, direction, _) in model.equations.iter().flat_map(|e| &e.terms) {
+        touched[node.index()] |= 1 << direction;
+    }
+    for load in model.steps.iter().flat_map(|s| &s.loads) {
+        if let LoadKind::Concentrated { nodes, direction } = &load.kind {
+            nodes.iter().for_each(|n| touched[n.index()] |= 1 << direction);
+        }
+    }
+    touched
+}
+
 /// Puts the expansion of a dependent direction into `done`, those that it needs first.
 fn resolve(
     key: (NodeId, u8),
@@ -161,11 +191,12 @@ mod tests {
         // u0 = 2 u1, u1 = -u2 + 0.5 u3 (all in direction 3).
         let n = NodeId;
         let model = model(&[&[(n(0), 2, 1.0), (n(1), 2, -2.0)], &[(n(1), 2, 2.0), (n(2), 2, 2.0), (n(3), 2, -1.0)]]);
-        let constraints = Constraints::new(&model);
+        let constraints = Constraints::new(&model, std::iter::empty());
         let mut found = Vec::new();
         constraints.expand(n(0), 2, 3.0, |node, d, v| found.push((node.0, d, v)));
         assert_eq!(found, vec![(2, 2, -6.0), (3, 2, 3.0)]);
-        assert!(!constraints.is_free(n(1), 2) && constraints.is_free(n(1), 0) && !constraints.is_prescribed(n(1), 2));
+        assert!(!constraints.is_free(n(1), 2) && constraints.is_free(n(3), 2) && !constraints.is_prescribed(n(1), 2));
+        assert!(!constraints.is_free(n(3), 0), "nothing acts along it");
     }
 
     #[test]
@@ -173,10 +204,10 @@ mod tests {
         let n = NodeId;
         let model = model(&[&[(n(4), 0, 1.0), (n(1), 0, -0.5), (n(2), 1, 0.25)]]);
         let mut columns = vec![Column::Displacement(vec![(n(1), 0, 2.0), (n(2), 1, 4.0)])];
-        Constraints::new(&model).extend(&mut columns);
+        Constraints::new(&model, std::iter::empty()).extend(&mut columns);
         assert_eq!(columns[0].entries().len(), 2, "1.0 - 1.0 leaves the dependent where it is");
         let mut columns = vec![Column::Displacement(vec![(n(1), 0, 2.0)])];
-        Constraints::new(&model).extend(&mut columns);
+        Constraints::new(&model, std::iter::empty()).extend(&mut columns);
         assert_eq!(columns[0].entries(), [(n(1), 0, 2.0), (n(4), 0, 1.0)]);
     }
 }

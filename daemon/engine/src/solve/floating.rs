@@ -3,7 +3,8 @@
 //! With motions `α` of the bodies, `u = G (f − Bᵀ F) + R α` and `Rᵀ (f − Bᵀ F) = 0`. At the contact points `D = B R` and
 //! `D_t = T R`; `R` vanishes on prescribed directions, so reactions and couplings keep their formulas.
 
-use super::columns::Column;
+use super::columns::{Column, merge};
+use super::constraints::Constraints;
 use super::linear::{self, Dense};
 use super::motions::Motions;
 use super::numbering::Bodies;
@@ -11,10 +12,10 @@ use super::parts::Sample;
 use crate::contact::points::ContactPoint;
 use crate::model::{Model, NodeId};
 
-/// Overclosure per unit of motion (squares, largest displacement 1) below which contact does not resist it.
-const RESISTED_MIN: f64 = 1e-20;
+/// Overclosure per unit of motion (its largest displacement is 1) below which contact does not resist it.
+const RESISTED_MIN: f64 = 1e-12;
 /// Part of a load, against what its forces would do without cancelling, that is rounding.
-const LOAD_ROUNDING: f64 = 1e-11;
+pub const LOAD_ROUNDING: f64 = 1e-11;
 
 /// All free motions of a model, body by body.
 pub struct Floating {
@@ -26,6 +27,8 @@ pub struct Floating {
     pub slips: Dense,
     /// Whether some contact point resists the motion.
     pub resisted: Vec<bool>,
+    /// Combinations of the motions, of one body or several, that no contact point resists: motions x combinations.
+    pub loose: Dense,
 }
 
 /// What columns do to the motions.
@@ -39,24 +42,26 @@ pub struct MotionLoads {
 impl Floating {
     /// Motions of all bodies. Within each body they are recombined into some that contact resists and some that it never
     /// does.
-    pub fn new(model: &Model, points: &[ContactPoint], bodies: &Bodies, motions: &mut [Motions]) -> Self {
+    pub fn new(
+        model: &Model,
+        constraints: &Constraints,
+        points: &[ContactPoint],
+        bodies: &Bodies,
+        motions: &mut [Motions],
+    ) -> Self {
         let mut resisted = Vec::new();
         let mut offsets = vec![0];
         for (b, body) in motions.iter_mut().enumerate() {
             let mut kinds = vec![true; body.count()];
             if body.count() > 0 {
                 let gaps = gaps_of(points, bodies, b, body);
-                let (values, vectors) = linear::eigen(&gaps.gram());
-                let never = values.iter().filter(|v| **v <= RESISTED_MIN).count();
-                if never > 0 && never < values.len() {
-                    let columns = |range: std::ops::Range<usize>| Dense {
-                        rows: vectors.rows,
-                        columns: range.len(),
-                        values: vectors.values[range.start * vectors.rows..range.end * vectors.rows].to_vec(),
-                    };
-                    body.combine(model, &bodies.nodes[b], &[columns(0..never), columns(never..values.len())]);
+                let (values, vectors) = linear::singular(&gaps);
+                let held = values.iter().filter(|v| **v > RESISTED_MIN * values[0].max(1.0)).count();
+                if held > 0 && held < values.len() {
+                    let groups = [columns(&vectors, 0..held), columns(&vectors, held..values.len())];
+                    body.combine(model, constraints, &bodies.nodes[b], &bodies.local, &groups);
                 }
-                kinds[..never].fill(false);
+                kinds[held..].fill(false);
             }
             offsets.push(offsets[b] + kinds.len());
             resisted.extend(kinds);
@@ -67,11 +72,37 @@ impl Floating {
             gaps: Dense::zeros(points.len(), count),
             slips: Dense::zeros(2 * points.len(), count),
             resisted,
+            loose: Dense::default(),
         };
         if count > 0 {
             out.fill(points, bodies, motions);
+            let (values, vectors) = linear::singular(&out.gaps);
+            let held = values.iter().filter(|v| **v > RESISTED_MIN * values[0].max(1.0)).count();
+            out.loose = columns(&vectors, held..count);
         }
         out
+    }
+
+    /// The loose combinations as forces on the free directions: what they measure of a displacement is how far it goes along
+    /// them.
+    pub fn loose_columns(&self, constraints: &Constraints, bodies: &Bodies, motions: &[Motions]) -> Vec<Column> {
+        let of_combination = |z: usize| {
+            let mut entries = Vec::new();
+            for (b, of_body) in motions.iter().enumerate() {
+                let amounts = &self.loose.column(z)[self.offsets[b]..self.offsets[b + 1]];
+                if amounts.iter().all(|a| *a == 0.0) {
+                    continue;
+                }
+                for (i, &node) in bodies.nodes[b].iter().enumerate() {
+                    for d in (0..3).filter(|&d| constraints.is_free(node, d)) {
+                        let moved: f64 = amounts.iter().enumerate().map(|(m, a)| a * of_body.at(m, i, d)).sum();
+                        entries.push((node, d as u8, moved));
+                    }
+                }
+            }
+            Column::Force(merge(entries))
+        };
+        (0..self.loose.columns).map(of_combination).collect()
     }
 
     /// Number of motions.
@@ -140,6 +171,15 @@ impl Floating {
             .max_by(|&a, &b| square(a).total_cmp(&square(b)).then(b.cmp(&a)))
             .expect("a combination of motions belongs to bodies");
         motions[body].describe(&combination[self.offsets[body]..self.offsets[body + 1]])
+    }
+}
+
+/// Some columns of a matrix.
+fn columns(matrix: &Dense, range: std::ops::Range<usize>) -> Dense {
+    Dense {
+        rows: matrix.rows,
+        columns: range.len(),
+        values: matrix.values[range.start * matrix.rows..range.end * matrix.rows].to_vec(),
     }
 }
 

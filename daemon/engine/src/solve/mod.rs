@@ -12,6 +12,7 @@ pub mod context;
 pub mod floating;
 pub mod lazy;
 pub mod linear;
+pub mod loose;
 pub mod motions;
 pub mod numbering;
 mod ordering;

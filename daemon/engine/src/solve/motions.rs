@@ -34,7 +34,7 @@ impl Motions {
     /// Free motions of a body; `local` maps nodes to body-local numbers.
     pub fn find(model: &Model, constraints: &Constraints, nodes: &[NodeId], elements: &[u32], local: &[u32]) -> Self {
         let mesh = &model.mesh;
-        let parts = Parts::find(mesh, nodes, elements, local);
+        let parts = Parts::find(mesh, nodes, elements, local, |n, d| constraints.is_free(n, d));
         let count = nodes.len() as f64;
         let mut centroid = [0.0; 3];
         for n in nodes {
@@ -49,7 +49,7 @@ impl Motions {
         if out.parts.parameters() <= PARAMETERS_MAX {
             let gram = out.gram(model, constraints, nodes, elements, local);
             out.parameters = kernel(&gram);
-            out.fill_rows(model, nodes);
+            out.fill_rows(model, constraints, nodes, local);
         }
         out
     }
@@ -65,7 +65,14 @@ impl Motions {
     }
 
     /// Replaces the motions by combinations of them, one a column, made simple within the given groups of columns.
-    pub fn combine(&mut self, model: &Model, nodes: &[NodeId], groups: &[Dense]) {
+    pub fn combine(
+        &mut self,
+        model: &Model,
+        constraints: &Constraints,
+        nodes: &[NodeId],
+        local: &[u32],
+        groups: &[Dense],
+    ) {
         let p = self.parameters.rows;
         let mut all = Dense { rows: p, columns: 0, values: Vec::new() };
         for group in groups {
@@ -78,7 +85,7 @@ impl Motions {
             all.columns += group.columns;
         }
         self.parameters = all;
-        self.fill_rows(model, nodes);
+        self.fill_rows(model, constraints, nodes, local);
     }
 
     /// Directions to hold so that no motion is left: a pivoted choice among the free ones, far apart and
@@ -117,15 +124,21 @@ impl Motions {
             .max_by(|&a, &b| square(a).total_cmp(&square(b)).then(b.cmp(&a)))
             .expect("a body has a part");
         let mut motion = [0.0; 6];
-        motion[..of_part(most).len()].copy_from_slice(of_part(most));
+        let directions = &self.parts.directions[self.parts.offsets[most]..self.parts.offsets[most + 1]];
+        for (&direction, &amount) in directions.iter().zip(of_part(most)) {
+            motion[usize::from(direction)] = amount;
+        }
         (self.parts.sample[most], rigid::in_words(&motion, self.centroid, self.size))
     }
 
-    /// Row of a direction of a node of a part: the parameters' factors, from the part's first parameter on.
+    /// Row of a direction of a node of a part: the factors of the part's parameters.
     fn row(&self, model: &Model, part: usize, node: NodeId, direction: usize) -> [f64; 6] {
         let mut row = [0.0; 6];
-        row[direction] = 1.0;
-        if self.parts.offsets[part + 1] - self.parts.offsets[part] == 6 {
+        let directions = &self.parts.directions[self.parts.offsets[part]..self.parts.offsets[part + 1]];
+        if let Some(at) = directions.iter().position(|&d| usize::from(d) == direction) {
+            row[at] = 1.0;
+        }
+        if directions.len() == 6 {
             let r: [f64; 3] =
                 std::array::from_fn(|d| (model.mesh.nodes[node.index()][d] - self.centroid[d]) / self.size);
             let rotations = [[0.0, -r[2], r[1]], [r[2], 0.0, -r[0]], [-r[1], r[0], 0.0]];
@@ -146,12 +159,19 @@ impl Motions {
         local: &[u32],
     ) -> Dense {
         let mut gram = Gram { sum: Dense::zeros(self.parts.parameters(), self.parts.parameters()), row: Vec::new() };
-        let add = |gram: &mut Gram, node: NodeId, direction: usize, factor: f64| {
-            let part = self.parts.of_node[local[node.index()] as usize] as usize;
+        let part_of = |node: NodeId| self.parts.of_node[local[node.index()] as usize] as usize;
+        let is_solid = |node: NodeId| matches!(self.parts.sample[part_of(node)], Sample::Element(_));
+        let own = |gram: &mut Gram, node: NodeId, direction: usize, factor: f64| {
+            let part = part_of(node);
             gram.add(self.parts.offsets[part], &self.row(model, part, node, direction), factor);
         };
+        // A dependent direction of a lone node is no parameter: it moves as what it depends on.
+        let add = |gram: &mut Gram, node: NodeId, direction: usize, factor: f64| match is_solid(node) {
+            true => own(gram, node, direction, factor),
+            false => constraints.expand(node, direction, factor, |n, d, f| own(gram, n, d, f)),
+        };
         for &node in nodes {
-            for direction in (0..3).filter(|&d| constraints.is_prescribed(node, d)) {
+            for direction in (0..3).filter(|&d| is_solid(node) && constraints.is_prescribed(node, d)) {
                 add(&mut gram, node, direction, 1.0);
                 gram.finish();
             }
@@ -165,13 +185,14 @@ impl Motions {
                 gram.finish();
             }
         }
-        for equation in &model.equations {
-            let largest = equation.terms.iter().fold(0.0f64, |m, t| m.max(t.2.abs()));
-            if equation.terms.iter().any(|t| nodes.binary_search(&t.0).is_err()) {
+        for ((node, direction), terms) in constraints.dependents() {
+            if nodes.binary_search(&node).is_err() || !is_solid(node) {
                 continue;
             }
-            for &(node, direction, coefficient) in &equation.terms {
-                add(&mut gram, node, usize::from(direction), coefficient / largest);
+            let largest = terms.iter().fold(1.0f64, |m, t| m.max(t.2.abs()));
+            own(&mut gram, node, usize::from(direction), 1.0 / largest);
+            for &(n, d, factor) in terms {
+                own(&mut gram, n, usize::from(d), -factor / largest);
             }
             gram.finish();
         }
@@ -193,20 +214,24 @@ impl Motions {
     }
 
     /// Rows from the parameters, each motion scaled to a largest entry of 1.
-    fn fill_rows(&mut self, model: &Model, nodes: &[NodeId]) {
+    fn fill_rows(&mut self, model: &Model, constraints: &Constraints, nodes: &[NodeId], local: &[u32]) {
         let k = self.parameters.columns;
         let mut rows = Dense::zeros(3 * nodes.len(), k);
-        if k > 0 {
-            for (i, &node) in nodes.iter().enumerate() {
-                let part = self.parts.of_node[i] as usize;
-                let offset = self.parts.offsets[part];
-                for direction in 0..3 {
-                    let row = self.row(model, part, node, direction);
-                    for m in 0..k {
-                        let parameters = &self.parameters.column(m)[offset..self.parts.offsets[part + 1]];
-                        rows.column_mut(m)[3 * i + direction] = row.iter().zip(parameters).map(|(r, p)| r * p).sum();
-                    }
+        let own = |node: NodeId, direction: usize, m: usize| -> f64 {
+            let part = self.parts.of_node[local[node.index()] as usize] as usize;
+            let row = self.row(model, part, node, direction);
+            let parameters = &self.parameters.column(m)[self.parts.offsets[part]..self.parts.offsets[part + 1]];
+            row.iter().zip(parameters).map(|(r, p)| r * p).sum()
+        };
+        for (i, &node) in nodes.iter().enumerate() {
+            let solid = matches!(self.parts.sample[self.parts.of_node[i] as usize], Sample::Element(_));
+            for (m, direction) in (0..k).flat_map(|m| (0..3).map(move |d| (m, d))) {
+                let mut sum = 0.0;
+                match solid {
+                    true => sum = own(node, direction, m),
+                    false => constraints.expand(node, direction, 1.0, |n, d, factor| sum += factor * own(n, d, m)),
                 }
+                rows.column_mut(m)[3 * i + direction] = sum;
             }
         }
         for m in 0..k {

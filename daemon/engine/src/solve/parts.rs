@@ -1,7 +1,7 @@
 //! Parts of a body that can move as rigid ones: clusters of solids joined by faces, and lone nodes.
 //!
 //! Two solids that share a node or an edge only are hinged to each other there. Nodes that no solid holds (of springs,
-//! bars, masses, equations) are parts of their own, with three translations and no rotation.
+//! bars, masses, equations) are parts of their own, with a translation for each of their free directions.
 
 use crate::element::quad::{cross, dot};
 use crate::model::{Mesh, NodeId};
@@ -12,8 +12,10 @@ const COLLINEAR: f64 = 1e-8;
 
 /// Parts of one body.
 pub struct Parts {
-    /// First parameter of each part; one more than there are parts.
+    /// First parameter of each part; one more than there are parts. Solids have three translations and three rotations.
     pub offsets: Vec<usize>,
+    /// Directions of the parameters of each part; of a lone node its free ones.
+    pub directions: Vec<u8>,
     /// Part of each body-local node; the first of several.
     pub of_node: Vec<u32>,
     /// Further parts that a body-local node belongs to.
@@ -33,12 +35,18 @@ pub enum Sample {
 
 impl Parts {
     /// Finds the parts of a body; `local` maps nodes to body-local numbers.
-    pub fn find(mesh: &Mesh, nodes: &[NodeId], elements: &[u32], local: &[u32]) -> Self {
+    pub fn find(
+        mesh: &Mesh,
+        nodes: &[NodeId],
+        elements: &[u32],
+        local: &[u32],
+        is_free: impl Fn(NodeId, usize) -> bool,
+    ) -> Self {
         let solids: Vec<u32> =
             elements.iter().copied().filter(|&e| mesh.elements.kind(e as usize).is_solid()).collect();
         let mut clusters = joined_by_faces(mesh, nodes.len(), &solids, local);
         let mut part_of_root = vec![u32::MAX; solids.len()];
-        let (mut offsets, mut sample) = (vec![0usize], Vec::new());
+        let (mut offsets, mut sample, mut directions) = (vec![0usize], Vec::new(), Vec::new());
         let mut of_node = vec![u32::MAX; nodes.len()];
         let mut shared = Vec::new();
         for (i, &e) in solids.iter().enumerate() {
@@ -46,7 +54,8 @@ impl Parts {
             if part_of_root[root] == u32::MAX {
                 part_of_root[root] = sample.len() as u32;
                 sample.push(Sample::Element(e));
-                offsets.push(offsets[offsets.len() - 1] + 6);
+                directions.extend(0..6u8);
+                offsets.push(directions.len());
             }
             let part = part_of_root[root];
             for n in mesh.elements.nodes(e as usize) {
@@ -64,10 +73,11 @@ impl Parts {
             if of_node[i] == u32::MAX {
                 of_node[i] = sample.len() as u32;
                 sample.push(Sample::Node(node));
-                offsets.push(offsets[offsets.len() - 1] + 3);
+                directions.extend((0..3u8).filter(|&d| is_free(node, usize::from(d))));
+                offsets.push(directions.len());
             }
         }
-        Self { offsets, of_node, shared, sample }
+        Self { offsets, directions, of_node, shared, sample }
     }
 
     /// Number of rigid parameters of all parts.
@@ -171,7 +181,7 @@ mod tests {
         let (mesh, nodes) = cubes(places);
         let elements: Vec<u32> = (0..places.len() as u32).collect();
         let local: Vec<u32> = (0..nodes.len() as u32).collect();
-        Parts::find(&mesh, &nodes, &elements, &local)
+        Parts::find(&mesh, &nodes, &elements, &local, |_, _| true)
     }
 
     #[test]
@@ -189,11 +199,11 @@ mod tests {
     }
 
     #[test]
-    fn a_node_without_solids_is_a_part_of_three_parameters() {
+    fn a_node_without_solids_is_a_part_with_its_free_directions() {
         let (mut mesh, mut nodes) = cubes(&[[0.0; 3]]);
         mesh.nodes.push([5.0, 0.0, 0.0]);
         nodes.push(NodeId(8));
-        let parts = Parts::find(&mesh, &nodes, &[0], &(0..9).collect::<Vec<_>>());
-        assert_eq!((parts.parameters(), parts.sample[1]), (9, Sample::Node(NodeId(8))));
+        let parts = Parts::find(&mesh, &nodes, &[0], &(0..9).collect::<Vec<_>>(), |_, d| d != 1);
+        assert_eq!((parts.parameters(), parts.sample[1]), (8, Sample::Node(NodeId(8))));
     }
 }

@@ -3,17 +3,18 @@
 //! Springs `ε` on the motions around their last place make the problem one with every motion held: `W` becomes
 //! `W + D ε⁻¹ Dᵀ` and the free overclosures gain `D (α + ε⁻¹ Rᵀ f)`. Then `α ← α + ε⁻¹ (Rᵀ f − Dᵀ F)`, again around the new
 //! place: the springs give way until they carry nothing. Each step reduces the force in them by about the ratio of their
-//! stiffness to that of the contact. A motion that nothing resists keeps its spring loaded, however far it goes.
+//! stiffness to that of the contact. A motion that nothing resists keeps its spring loaded, however far it goes. Once the set of
+//! closed points stands, a Newton step on the motions ends the search: also for motions that contact holds only weakly.
 //!
 //! Source: proximal point method on the multipliers of the balance (Rockafellar 1976); for problems of this kind it converges
 //! from any start, linearly at a rate that softer springs make as fast as one likes.
 
-use super::view::{Compliance, Springs};
+use super::view::{Compliance, Springs, View};
 use super::{ContactSolver, ContactSystem, Problem, SPRING_RATIO, SolveCounts, SolveFailure, Structure, Unknowns};
-use crate::solve::linear::Dense;
+use crate::solve::linear::{self, Dense};
 
 /// Steps before an attempt is given up; five are usual.
-const STEPS_MAX: u32 = 100;
+const STEPS_MAX: u32 = 200;
 /// Force in the springs, relative to the forces in the balance, that is rounding.
 const BALANCED: f64 = 1e-13;
 /// The same when it no longer gets less: sums over many points round.
@@ -27,15 +28,45 @@ const SOFTENING: f64 = 1e-2;
 /// Springs this much softer than at the start that still carry load: nothing resists the motion.
 const SOFTEST: f64 = 1e-16;
 
+/// Stiffness of closed contact, in series with the springs and relative to them, below which it holds nothing.
+const HELD_MIN: f64 = 1e-9;
+/// Newton step on the motions, relative to the overclosures and motions at hand, that is rounding.
+const NEGLIGIBLE_STEP: f64 = 1e-14;
+
 /// Work space of the balance.
 #[derive(Default)]
 pub(super) struct BalanceWork {
-    /// `W + D ε⁻¹ Dᵀ` and the springs that went into it.
+    held: HeldCompliance,
+    steps: Steps,
+}
+
+/// `W + D ε⁻¹ Dᵀ` and the springs that went into it.
+#[derive(Default)]
+struct HeldCompliance {
     compliance: Dense,
     springs: Vec<f64>,
+}
+
+/// How far the closed points hold the motions that are still loaded.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Hold {
+    Full,
+    Partial,
+    None,
+}
+
+/// Vectors of a step.
+#[derive(Default)]
+struct Steps {
     free: Vec<f64>,
     place: Vec<f64>,
     residual: Vec<f64>,
+    /// `S` in units of the springs.
+    stiffness: Dense,
+    response: Vec<f64>,
+    newton: Vec<f64>,
+    /// Motions that the springs give: a step that always leads on.
+    safe: Vec<f64>,
 }
 
 impl ContactSolver {
@@ -64,6 +95,7 @@ impl ContactSolver {
         unknowns: &mut Unknowns<'_>,
         work: &mut BalanceWork,
     ) -> Result<SolveCounts, SolveFailure> {
+        let BalanceWork { held, steps } = work;
         let (n, k) = (system.points.len(), system.gap_motions.columns);
         let unheld = |m: usize| {
             let mut motions = vec![0.0; k];
@@ -76,29 +108,42 @@ impl ContactSolver {
             return Err(unheld(m));
         }
         let mut counts = SolveCounts::default();
-        let mut previous = f64::INFINITY;
-        let mut polished = false;
+        // Residual of the last place that was kept; where to go back to if a Newton step does not reduce it.
+        let (mut last, mut retreat, mut trusted, mut polished) = (f64::INFINITY, false, true, false);
         for _ in 0..STEPS_MAX {
-            if work.hold(system, unknowns.springs) {
+            if held.hold(system, unknowns.springs) {
                 self.forget_factor();
             }
-            let scale = work.free_overclosures(system, problem, unknowns);
+            let scale = steps.free_overclosures(system, problem, unknowns);
             let view = system.held(Some(match &system.structure {
-                Structure::Dense(_) => Compliance::Dense(&work.compliance),
+                Structure::Dense(_) => Compliance::Dense(&held.compliance),
                 Structure::Sparse(sparse) => Compliance::Sparse(
                     sparse,
-                    Some(Springs { gaps: &system.gap_motions, springs: &work.springs, resisted: &system.resisted }),
+                    Some(Springs { gaps: &system.gap_motions, springs: &held.springs, resisted: &system.resisted }),
                 ),
             }));
             view.relief(unknowns.forces, unknowns.relief);
-            let done = self.solve_held(&view, &work.free, scale, unknowns)?;
+            let done = self.solve_held(&view, &steps.free, scale, unknowns)?;
             counts.equilibrium_iterations += done.equilibrium_iterations;
             counts.severe_discontinuity_iterations += done.severe_discontinuity_iterations;
             counts.factorizations += done.factorizations;
-            let worst = work.move_on(system, problem, unknowns);
-            let slow = worst > SLOW * previous;
-            let stiffened = self.adjust_springs(system, unknowns.springs, slow);
-            if !stiffened && (worst <= BALANCED || (worst <= BALANCED_STALLED && slow)) {
+            let worst = steps.measure(system, problem, unknowns);
+            if std::mem::take(&mut retreat) && worst > 0.5 * last && worst > BALANCED_STALLED {
+                // The Newton step led to another set of closed points: the safe one instead.
+                unknowns.motions.copy_from_slice(&steps.safe);
+                trusted = false;
+                continue;
+            }
+            let slow = worst > SLOW * last;
+            let hold = self.newton_step(system, &view, &held.springs, steps);
+            let stiffened = self.adjust_springs(system, unknowns.springs, slow && hold != Hold::Full);
+            for m in 0..k {
+                steps.safe[m] = unknowns.motions[m] + steps.residual[m] / held.springs[m];
+            }
+            let size = steps.safe.iter().fold(scale, |s, a| s.max(a.abs()));
+            let small = hold != Hold::None && steps.newton.iter().all(|s| s.abs() <= NEGLIGIBLE_STEP * size);
+            if !stiffened && (worst <= BALANCED_STALLED && (slow || small) || worst <= BALANCED && hold == Hold::None) {
+                unknowns.motions.copy_from_slice(&steps.safe);
                 system.relief(unknowns.forces, unknowns.relief);
                 system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
                 if polished || self.laws_hold(system, problem.free, unknowns) {
@@ -108,15 +153,57 @@ impl ContactSolver {
                 polished = true;
                 let fitting = |m: usize| POLISHING * self.holding_stiffness(system, m);
                 (unknowns.springs.iter_mut().enumerate()).for_each(|(m, s)| *s = s.max(fitting(m)));
-                previous = f64::INFINITY;
+                last = f64::INFINITY;
                 continue;
             }
             if unknowns.springs.iter().zip(&system.springs).any(|(now, first)| *now < SOFTEST * first) {
-                return Err(SolveFailure::Unheld { motions: work.residual.clone() });
+                return Err(SolveFailure::Unheld { motions: steps.residual.clone() });
             }
-            previous = worst;
+            last = worst;
+            if hold != Hold::None && trusted && !stiffened {
+                unknowns.motions.iter_mut().zip(&steps.newton).for_each(|(a, step)| *a += step);
+                retreat = true;
+            } else {
+                unknowns.motions.copy_from_slice(&steps.safe);
+                trusted = true;
+            }
         }
         Err(SolveFailure::NotConverged { points: (0..n as u32).filter(|&i| unknowns.closed[i as usize]).collect() })
+    }
+
+    /// Newton step on the motions with the closed points as they are: `S⁻¹ (Rᵀ f − Dᵀ F)` with the stiffness
+    /// `S = Dᵀ (W + C + D ε⁻¹ Dᵀ)⁻¹ D` that they and the springs have in series. Directions that no closed point holds go as far as
+    /// their springs give: only partly held. Not at all where nothing is closed: there is no step then.
+    fn newton_step(&mut self, system: &ContactSystem, view: &View<'_>, springs: &[f64], steps: &mut Steps) -> Hold {
+        let k = springs.len();
+        steps.stiffness.rows = k;
+        steps.stiffness.columns = k;
+        steps.stiffness.values.clear();
+        steps.stiffness.values.resize(k * k, 0.0);
+        for m in (0..k).filter(|&m| system.resisted[m]) {
+            if !self.active_response(view, system.gap_motions.column(m), &mut steps.response) {
+                return Hold::None;
+            }
+            for l in (0..k).filter(|&l| system.resisted[l]) {
+                let d = system.gap_motions.column(l);
+                let stiffness: f64 = d.iter().zip(&steps.response).map(|(d, x)| d * x).sum();
+                // In units of the springs: between 0, not held, and 1, held by something much stiffer.
+                steps.stiffness.values[m * k + l] = stiffness / (springs[l] * springs[m]).sqrt();
+            }
+        }
+        let (values, vectors) = linear::eigen(&steps.stiffness);
+        steps.newton.fill(0.0);
+        let mut hold = Hold::Full;
+        for (value, v) in values.iter().zip(vectors.values.chunks_exact(k.max(1))) {
+            let along: f64 = (0..k).map(|m| v[m] * steps.residual[m] / springs[m].sqrt()).sum();
+            let is_held = *value > HELD_MIN;
+            if !is_held && along != 0.0 {
+                hold = Hold::Partial;
+            }
+            let amount = if is_held { along / value } else { along };
+            (0..k).for_each(|m| steps.newton[m] += amount * v[m] / springs[m].sqrt());
+        }
+        hold
     }
 
     /// Springs for the next step: soft against the closed contact that holds each motion; ever softer while a motion goes on
@@ -148,7 +235,7 @@ impl ContactSolver {
     }
 }
 
-impl BalanceWork {
+impl HeldCompliance {
     /// Takes springs over, with `W + D ε⁻¹ Dᵀ` where there is a `W`; whether that is another one than before.
     fn hold(&mut self, system: &ContactSystem, springs: &[f64]) -> bool {
         if self.springs == springs {
@@ -170,7 +257,9 @@ impl BalanceWork {
         }
         true
     }
+}
 
+impl Steps {
     /// `h_free + D (α + ε⁻¹ Rᵀ f)`; returns the size of overclosures against which rounding is judged.
     fn free_overclosures(&mut self, system: &ContactSystem, problem: Problem<'_>, unknowns: &Unknowns<'_>) -> f64 {
         self.place.clear();
@@ -188,11 +277,14 @@ impl BalanceWork {
         scale.max(0.05 * largest(&self.free))
     }
 
-    /// Moves by what the springs carry; returns the largest of it against the forces in the balance.
-    fn move_on(&mut self, system: &ContactSystem, problem: Problem<'_>, unknowns: &mut Unknowns<'_>) -> f64 {
+    /// What the springs carry; returns the largest of it against the forces in the balance.
+    fn measure(&mut self, system: &ContactSystem, problem: Problem<'_>, unknowns: &Unknowns<'_>) -> f64 {
         let mut worst = 0.0f64;
+        let k = problem.load.len();
         self.residual.clear();
-        for m in 0..problem.load.len() {
+        self.newton.resize(k, 0.0);
+        self.safe.resize(k, 0.0);
+        for m in 0..k {
             if !system.resisted[m] {
                 self.residual.push(0.0);
                 continue;
@@ -203,7 +295,6 @@ impl BalanceWork {
                 scale += (d * f).abs();
             }
             let residual = problem.load[m] - sum;
-            unknowns.motions[m] += residual / unknowns.springs[m];
             if residual != 0.0 {
                 worst = worst.max(residual.abs() / scale);
             }

@@ -287,6 +287,28 @@ impl ContactSolver {
         }
     }
 
+    /// `(W + C)⁻¹ right` on the closed points of the last model, zero elsewhere; false when there are none.
+    pub(super) fn active_response(&mut self, view: &View<'_>, right: &[f64], out: &mut Vec<f64>) -> bool {
+        out.clear();
+        out.resize(right.len(), 0.0);
+        if self.factor_rows.is_empty() {
+            return false;
+        }
+        let mut x: Vec<f64> = self.factor_rows.iter().map(|&i| right[i as usize]).collect();
+        if let Compliance::Sparse(..) = view.compliance {
+            let right = std::mem::replace(&mut x, vec![0.0; self.factor_rows.len()]);
+            if !self.sparse.solve(view, &self.factor_rows, &self.factor_compliance, &right, &mut x) {
+                return false;
+            }
+        } else {
+            linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut x);
+        }
+        for (&i, x) in self.factor_rows.iter().zip(&x) {
+            out[i as usize] = *x;
+        }
+        true
+    }
+
     /// `W + C` on the rows of the factor, lower triangle used.
     fn fill_factor(&mut self, view: &View<'_>) {
         let Compliance::Dense(w) = view.compliance else { return };

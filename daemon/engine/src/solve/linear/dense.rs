@@ -120,6 +120,25 @@ pub struct DenseScratch {
     memory_for: usize,
 }
 
+/// Singular values (descending) and right singular vectors (columns) of a matrix; as many as it has columns.
+pub fn singular(matrix: &Dense) -> (Vec<f64>, Dense) {
+    let k = matrix.columns;
+    if k == 0 {
+        return (Vec::new(), Dense::default());
+    }
+    // Rows of zeros change nothing and give every column its vector.
+    let rows = matrix.rows.max(k);
+    let padded = faer::Mat::from_fn(rows, k, |i, j| if i < matrix.rows { matrix.column(j)[i] } else { 0.0 });
+    let decomposition = padded.thin_svd().expect("a finite matrix has singular values");
+    let mut vectors = Dense::zeros(k, k);
+    for j in 0..k {
+        for (i, x) in vectors.column_mut(j).iter_mut().enumerate() {
+            *x = decomposition.V()[(i, j)];
+        }
+    }
+    ((0..k).map(|i| decomposition.S()[i]).collect(), vectors)
+}
+
 /// Eigenvalues (ascending) and eigenvectors (columns) of a symmetric matrix.
 pub fn eigen(matrix: &Dense) -> (Vec<f64>, Dense) {
     let n = matrix.rows;

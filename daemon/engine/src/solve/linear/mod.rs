@@ -12,7 +12,7 @@ mod symbolic;
 mod tests;
 
 pub use blocks::Blocks;
-pub use dense::{Dense, DenseScratch, cholesky_in_place, cholesky_solve, eigen};
+pub use dense::{Dense, DenseScratch, cholesky_in_place, cholesky_solve, eigen, singular};
 pub use factor::Factor;
 pub use symbolic::{FactorSize, Symbolic};
 
