@@ -189,7 +189,7 @@ impl Simulation {
             }
         };
         if !prepared.loose.is_empty() {
-            prepared.loose.settle(&prepared.condensed, &coefficients, &work.forces, &mut work.motions);
+            prepared.loose.settle(&prepared.condensed, &coefficients, &work.forces, &mut work.motions, &mut work.loose);
             prepared.contact.overclosures(&work.free, &work.relief, &work.motions, &mut work.overclosures);
         }
         let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };

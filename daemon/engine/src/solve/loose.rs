@@ -35,13 +35,20 @@ impl Loose {
         self.combinations.columns == 0
     }
 
-    /// Moves the motions so that `(R Z)ᵀ u = 0`.
-    pub fn settle(&self, condensed: &Condensed, coefficients: &[f64], forces: &[f64], motions: &mut [f64]) {
+    /// Moves the motions so that `(R Z)ᵀ u = 0`; `amounts` is work space.
+    pub fn settle(
+        &self,
+        condensed: &Condensed,
+        coefficients: &[f64],
+        forces: &[f64],
+        motions: &mut [f64],
+        amounts: &mut Vec<f64>,
+    ) {
         let k = self.combinations.columns;
-        let mut amounts: Vec<f64> = (0..k)
-            .map(|z| -condensed.conjugate(self.first_column + z, Response { coefficients, forces, motions }))
-            .collect();
-        linear::cholesky_solve(&self.factor, k, &mut amounts);
-        self.combinations.multiply_add(&amounts, motions);
+        amounts.clear();
+        let response = Response { coefficients, forces, motions };
+        amounts.extend((0..k).map(|z| -condensed.conjugate(self.first_column + z, response)));
+        linear::cholesky_solve(&self.factor, k, amounts);
+        self.combinations.multiply_add(amounts, motions);
     }
 }

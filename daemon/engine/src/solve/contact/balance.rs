@@ -11,7 +11,7 @@
 
 use super::view::{Compliance, Springs, View};
 use super::{ContactSolver, ContactSystem, Problem, SPRING_RATIO, SolveCounts, SolveFailure, Structure, Unknowns};
-use crate::solve::linear::{self, Dense};
+use crate::solve::linear::{self, Dense, DenseScratch};
 
 /// Steps before an attempt is given up; five are usual.
 const STEPS_MAX: u32 = 200;
@@ -63,6 +63,8 @@ struct Steps {
     residual: Vec<f64>,
     /// `S` in units of the springs.
     stiffness: Dense,
+    factor: Vec<f64>,
+    scratch: DenseScratch,
     response: Vec<f64>,
     newton: Vec<f64>,
     /// Motions that the springs give: a step that always leads on.
@@ -191,19 +193,20 @@ impl ContactSolver {
                 steps.stiffness.values[m * k + l] = stiffness / (springs[l] * springs[m]).sqrt();
             }
         }
-        let (values, vectors) = linear::eigen(&steps.stiffness);
-        steps.newton.fill(0.0);
-        let mut hold = Hold::Full;
-        for (value, v) in values.iter().zip(vectors.values.chunks_exact(k.max(1))) {
-            let along: f64 = (0..k).map(|m| v[m] * steps.residual[m] / springs[m].sqrt()).sum();
-            let is_held = *value > HELD_MIN;
-            if !is_held && along != 0.0 {
-                hold = Hold::Partial;
-            }
-            let amount = if is_held { along / value } else { along };
-            (0..k).for_each(|m| steps.newton[m] += amount * v[m] / springs[m].sqrt());
+        for m in (0..k).filter(|&m| !system.resisted[m]) {
+            steps.stiffness.values[m * k + m] = 1.0;
         }
-        hold
+        steps.factor.clone_from(&steps.stiffness.values);
+        let regular = linear::cholesky_in_place(&mut steps.factor, k, &mut steps.scratch)
+            && (0..k).all(|m| steps.factor[m * k + m].powi(2) > HELD_MIN);
+        if !regular {
+            return steps.partial_step(springs);
+        }
+        steps.newton.clear();
+        steps.newton.extend(steps.residual.iter().zip(springs).map(|(r, spring)| r / spring.sqrt()));
+        linear::cholesky_solve(&steps.factor, k, &mut steps.newton);
+        steps.newton.iter_mut().zip(springs).for_each(|(step, spring)| *step /= spring.sqrt());
+        Hold::Full
     }
 
     /// Springs for the next step: soft against the closed contact that holds each motion; ever softer while a motion goes on
@@ -260,6 +263,24 @@ impl HeldCompliance {
 }
 
 impl Steps {
+    /// The Newton step where the closed points hold some directions only: the others go as far as their springs give.
+    fn partial_step(&mut self, springs: &[f64]) -> Hold {
+        let k = springs.len();
+        let (values, vectors) = linear::eigen(&self.stiffness);
+        self.newton.fill(0.0);
+        let mut hold = Hold::Full;
+        for (value, v) in values.iter().zip(vectors.values.chunks_exact(k.max(1))) {
+            let along: f64 = (0..k).map(|m| v[m] * self.residual[m] / springs[m].sqrt()).sum();
+            let is_held = *value > HELD_MIN;
+            if !is_held && along != 0.0 {
+                hold = Hold::Partial;
+            }
+            let amount = if is_held { along / value } else { along };
+            (0..k).for_each(|m| self.newton[m] += amount * v[m] / springs[m].sqrt());
+        }
+        hold
+    }
+
     /// `h_free + D (α + ε⁻¹ Rᵀ f)`; returns the size of overclosures against which rounding is judged.
     fn free_overclosures(&mut self, system: &ContactSystem, problem: Problem<'_>, unknowns: &Unknowns<'_>) -> f64 {
         self.place.clear();

@@ -294,16 +294,18 @@ impl ContactSolver {
         if self.factor_rows.is_empty() {
             return false;
         }
-        let mut x: Vec<f64> = self.factor_rows.iter().map(|&i| right[i as usize]).collect();
+        self.right.clear();
+        self.right.extend(self.factor_rows.iter().map(|&i| right[i as usize]));
         if let Compliance::Sparse(..) = view.compliance {
-            let right = std::mem::replace(&mut x, vec![0.0; self.factor_rows.len()]);
-            if !self.sparse.solve(view, &self.factor_rows, &self.factor_compliance, &right, &mut x) {
+            let mut x = vec![0.0; self.factor_rows.len()];
+            if !self.sparse.solve(view, &self.factor_rows, &self.factor_compliance, &self.right, &mut x) {
                 return false;
             }
+            self.right = x;
         } else {
-            linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut x);
+            linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
         }
-        for (&i, x) in self.factor_rows.iter().zip(&x) {
+        for (&i, x) in self.factor_rows.iter().zip(&self.right) {
             out[i as usize] = *x;
         }
         true
