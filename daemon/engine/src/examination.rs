@@ -64,34 +64,41 @@ fn unheld(
     let loads = floating.loads(&loading.columns, bodies, motions);
     let ends = loading.step_ends(model);
     // What the lines of the deck do together at the end of a step counts: one may balance another.
-    let acts = |m: usize| {
+    let acts = |z: usize| {
+        let combination = floating.loose.column(z);
         ends.iter().any(|coefficients| {
             let terms = |d: &Dense, abs: bool| -> f64 {
-                let term = |(j, a): (usize, &f64)| if abs { (a * d.column(j)[m]).abs() } else { a * d.column(j)[m] };
+                let of_column = |j: usize| d.column(j).iter().zip(combination).map(|(l, z)| l * z).sum::<f64>();
+                let of_scale = |j: usize| d.column(j).iter().zip(combination).map(|(l, z)| (l * z).abs()).sum::<f64>();
+                let term = |(j, a): (usize, &f64)| if abs { a.abs() * of_scale(j) } else { a * of_column(j) };
                 coefficients.iter().enumerate().map(term).sum()
             };
             terms(&loads.loads, false).abs() > LOAD_ROUNDING * terms(&loads.scales, true)
         })
     };
-    for (b, of_body) in motions.iter().enumerate() {
-        let first = floating.offsets[b];
-        let (mut loaded, mut idle): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
-        for m in (0..of_body.count()).filter(|&m| !floating.resisted[first + m]) {
-            let mut unit = vec![0.0; floating.count()];
-            unit[first + m] = 1.0;
-            let (sample, words) = floating.describe(motions, &unit);
-            let said = match sample {
-                Sample::Element(_) => words,
-                Sample::Node(node) => format!("{words} of node {}", model.mesh.node_labels[node.index()]),
-            };
-            if acts(first + m) {
-                loaded.push(said);
-            } else if matches!(sample, Sample::Element(_)) {
-                // A lone node that nothing loads and nothing resists just stays.
-                idle.push(said);
+    // Findings of one body together, bodies in the order of their motions.
+    let mut found: Vec<(String, Vec<String>, Vec<String>)> = Vec::new();
+    for z in 0..floating.loose.columns {
+        let (sample, words) = floating.describe(motions, floating.loose.column(z));
+        let (name, said) = match sample {
+            Sample::Node(node) => (format!("node {}", model.mesh.node_labels[node.index()]), words),
+            Sample::Element(e) => {
+                let body = bodies.of_node[model.mesh.elements.nodes(e as usize)[0].index()] as usize;
+                (body_name(model, &bodies.nodes[body], &bodies.elements[body]), words)
             }
+        };
+        let at = found.iter().position(|f| f.0 == name).unwrap_or_else(|| {
+            found.push((name, Vec::new(), Vec::new()));
+            found.len() - 1
+        });
+        if acts(z) {
+            found[at].1.push(said);
+        } else if matches!(sample, Sample::Element(_)) {
+            // A lone node that nothing loads and nothing resists just stays.
+            found[at].2.push(said);
         }
-        let name = body_name(model, &bodies.nodes[b], &bodies.elements[b]);
+    }
+    for (name, loaded, idle) in found {
         if !loaded.is_empty() {
             errors.push(Diagnostic::error(
                 Place::nowhere(),

@@ -136,9 +136,11 @@ impl PreparedModel {
             }
         };
         let contact = ContactSystem {
+            extent: model.mesh.nodes.iter().flatten().fold(0.0, |m, x| x.abs().max(m)),
             springs: initial_springs(&structure, &floating.gaps),
             gap_motions: floating.gaps.clone(),
             resisted: floating.resisted.clone(),
+            loose: floating.loose.clone(),
             structure,
             points: points
                 .iter()

@@ -15,6 +15,8 @@ pub type BodyResult = Result<(Body, BodyContribution), BodyError>;
 
 /// Operations of condensing below which the other path is not even looked at: seconds.
 const CONDENSED_CHEAP: f64 = 1e11;
+/// Largest separators of nested dissection that go one after another.
+const SEPARATORS: f64 = 3.0;
 /// Factorisations that the sparse path is reckoned with: one for each set of closed points on the way to the solution.
 const SPARSE_FACTORIZATIONS: f64 = 6.0;
 
@@ -31,13 +33,22 @@ pub fn choose_path(
         condensed_operations(3 * retained_nodes(context, &bodies.nodes[b], &points).len(), points.len())
     };
     let operations: f64 = if path == PathChoice::Auto { (0..bodies.nodes.len()).map(of_body).sum() } else { 0.0 };
-    if path == PathChoice::Dense || (path == PathChoice::Auto && operations < CONDENSED_CHEAP) {
+    let cheap = operations < CONDENSED_CHEAP || (0..bodies.nodes.len()).all(|b| is_bulky(context, bodies, b));
+    if path == PathChoice::Dense || (path == PathChoice::Auto && cheap) {
         return (true, None);
     }
     let coupled = Coupled::new(context, bodies, motions, floating);
     let sparse = SPARSE_FACTORIZATIONS * coupled.operations();
     tracing::debug!(dense = operations, sparse, "operations of the two paths");
     if path == PathChoice::Auto && operations <= sparse { (true, None) } else { (false, Some(coupled)) }
+}
+
+/// Whether the nodes that contact reaches are no more than a cube of as many nodes has in its largest separators: then the
+/// factorisation itself costs as much as condensing, on either path.
+fn is_bulky(context: &Context<'_>, bodies: &Bodies, body: usize) -> bool {
+    let nodes = &bodies.nodes[body];
+    let points = points_of_body(context, bodies, body);
+    retained_nodes(context, nodes, &points).len() as f64 <= SEPARATORS * (nodes.len() as f64).powf(2.0 / 3.0)
 }
 
 /// Contact points that reach free directions of a body.

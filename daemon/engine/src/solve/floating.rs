@@ -6,7 +6,7 @@
 use super::columns::{Column, merge};
 use super::constraints::Constraints;
 use super::linear::{self, Dense};
-use super::motions::Motions;
+use super::motions::{self, Motions};
 use super::numbering::Bodies;
 use super::parts::Sample;
 use crate::contact::points::ContactPoint;
@@ -25,7 +25,8 @@ pub struct Floating {
     pub gaps: Dense,
     /// `D_t`: (first tangents, then second) x motions.
     pub slips: Dense,
-    /// Whether some contact point resists the motion.
+    /// Whether contact resists the motion on its own: independent columns of `D`, as many as there are. Together with the loose
+    /// combinations these motions span all.
     pub resisted: Vec<bool>,
     /// Combinations of the motions, of one body or several, that no contact point resists: motions x combinations.
     pub loose: Dense,
@@ -35,7 +36,7 @@ pub struct Floating {
 pub struct MotionLoads {
     /// `Rᵀ f` of unit coefficients: motions x columns; zero for displacement columns.
     pub loads: Dense,
-    /// The same sums with every term positive: the scale of their rounding.
+    /// The same sums with the lengths of forces and motions: the scale of their rounding.
     pub scales: Dense,
 }
 
@@ -49,29 +50,24 @@ impl Floating {
         bodies: &Bodies,
         motions: &mut [Motions],
     ) -> Self {
-        let mut resisted = Vec::new();
         let mut offsets = vec![0];
         for (b, body) in motions.iter_mut().enumerate() {
-            let mut kinds = vec![true; body.count()];
             if body.count() > 0 {
-                let gaps = gaps_of(points, bodies, b, body);
-                let (values, vectors) = linear::singular(&gaps);
+                let (values, vectors) = linear::singular(&gaps_of(points, bodies, b, body));
                 let held = values.iter().filter(|v| **v > RESISTED_MIN * values[0].max(1.0)).count();
                 if held > 0 && held < values.len() {
                     let groups = [columns(&vectors, 0..held), columns(&vectors, held..values.len())];
                     body.combine(model, constraints, &bodies.nodes[b], &bodies.local, &groups);
                 }
-                kinds[held..].fill(false);
             }
-            offsets.push(offsets[b] + kinds.len());
-            resisted.extend(kinds);
+            offsets.push(offsets[b] + body.count());
         }
         let count = offsets[motions.len()];
         let mut out = Self {
             offsets,
             gaps: Dense::zeros(points.len(), count),
             slips: Dense::zeros(2 * points.len(), count),
-            resisted,
+            resisted: vec![false; count],
             loose: Dense::default(),
         };
         if count > 0 {
@@ -79,6 +75,8 @@ impl Floating {
             let (values, vectors) = linear::singular(&out.gaps);
             let held = values.iter().filter(|v| **v > RESISTED_MIN * values[0].max(1.0)).count();
             out.loose = columns(&vectors, held..count);
+            motions::echelon(&mut out.loose);
+            out.resisted = independent(&out.gaps, held);
         }
         out
     }
@@ -107,7 +105,7 @@ impl Floating {
 
     /// Number of motions.
     pub fn count(&self) -> usize {
-        self.resisted.len()
+        self.gaps.columns
     }
 
     fn fill(&mut self, points: &[ContactPoint], bodies: &Bodies, motions: &[Motions]) {
@@ -125,8 +123,7 @@ impl Floating {
                         let column = self.offsets[body] + m;
                         let moved = value * motions[body].at(m, local, direction);
                         match kind {
-                            0 if self.resisted[column] => self.gaps.column_mut(column)[p] += moved,
-                            0 => {}
+                            0 => self.gaps.column_mut(column)[p] += moved,
                             t => self.slips.column_mut(column)[(t - 1) * n + p] += moved,
                         }
                     }
@@ -143,16 +140,21 @@ impl Floating {
         };
         for (j, column) in columns.iter().enumerate() {
             let Column::Force(entries) = column else { continue };
-            for &(node, direction, value) in entries {
+            // Entries of one node stand together: rounding is judged against the lengths of its force and its motion.
+            for of_node in entries.chunk_by(|a, b| a.0 == b.0) {
+                let node = of_node[0].0;
                 let body = bodies.of_node[node.index()];
                 if body == u32::MAX {
                     continue;
                 }
                 let (body, local) = (body as usize, bodies.local[node.index()] as usize);
+                let force = of_node.iter().map(|e| e.2 * e.2).sum::<f64>().sqrt();
                 for m in 0..motions[body].count() {
-                    let work = value * motions[body].at(m, local, usize::from(direction));
+                    let at = |d: usize| motions[body].at(m, local, d);
+                    let length = (0..3).map(|d| at(d) * at(d)).sum::<f64>().sqrt();
+                    let work: f64 = of_node.iter().map(|e| e.2 * at(usize::from(e.1))).sum();
                     out.loads.column_mut(j)[self.offsets[body] + m] += work;
-                    out.scales.column_mut(j)[self.offsets[body] + m] += work.abs();
+                    out.scales.column_mut(j)[self.offsets[body] + m] += force * length;
                 }
             }
             for (load, scale) in out.loads.column_mut(j).iter_mut().zip(out.scales.column(j)) {
@@ -172,6 +174,28 @@ impl Floating {
             .expect("a combination of motions belongs to bodies");
         motions[body].describe(&combination[self.offsets[body]..self.offsets[body + 1]])
     }
+}
+
+/// A choice of independent columns, the largest first.
+fn independent(matrix: &Dense, count: usize) -> Vec<bool> {
+    let mut rest = matrix.clone();
+    let mut chosen = vec![false; matrix.columns];
+    let square = |rest: &Dense, m: usize| rest.column(m).iter().map(|x| x * x).sum::<f64>();
+    for _ in 0..count {
+        let candidates = (0..rest.columns).filter(|&m| !chosen[m]);
+        let Some(pivot) = candidates.max_by(|&a, &b| square(&rest, a).total_cmp(&square(&rest, b)).then(b.cmp(&a)))
+        else {
+            break;
+        };
+        chosen[pivot] = true;
+        let length = square(&rest, pivot).sqrt();
+        let unit: Vec<f64> = rest.column(pivot).iter().map(|x| x / length).collect();
+        for m in 0..rest.columns {
+            let along: f64 = rest.column(m).iter().zip(&unit).map(|(x, u)| x * u).sum();
+            rest.column_mut(m).iter_mut().zip(&unit).for_each(|(x, u)| *x -= along * u);
+        }
+    }
+    chosen
 }
 
 /// Some columns of a matrix.

@@ -279,7 +279,7 @@ pub fn kernel(gram: &Dense) -> Dense {
 
 /// Reduces columns so that each has an entry of 1 where the others have 0, largest entries first: motions along and about
 /// axes come out as such.
-fn echelon(columns: &mut Dense) {
+pub fn echelon(columns: &mut Dense) {
     let (rows, k) = (columns.rows, columns.columns);
     let mut done = vec![false; k];
     for _ in 0..k {

@@ -33,6 +33,9 @@ const HELD_MIN: f64 = 1e-9;
 /// Newton step on the motions, relative to the overclosures and motions at hand, that is rounding.
 const NEGLIGIBLE_STEP: f64 = 1e-14;
 
+/// Load along a motion that contact never resists, relative to what its forces would do without cancelling, that is rounding.
+const LOAD_ROUNDING: f64 = 1e-10;
+
 /// Work space of the balance.
 #[derive(Default)]
 pub(super) struct BalanceWork {
@@ -99,15 +102,16 @@ impl ContactSolver {
     ) -> Result<SolveCounts, SolveFailure> {
         let BalanceWork { held, steps } = work;
         let (n, k) = (system.points.len(), system.gap_motions.columns);
-        let unheld = |m: usize| {
-            let mut motions = vec![0.0; k];
-            motions[m] = problem.load[m];
-            SolveFailure::Unheld { motions }
-        };
-        if let Some(m) =
-            (0..k).find(|&m| !system.resisted[m] && problem.load[m].abs() > BALANCED_STALLED * problem.load_scale[m])
-        {
-            return Err(unheld(m));
+        for z in 0..system.loose.columns {
+            let combination = system.loose.column(z);
+            let (mut load, mut scale) = (0.0, 0.0);
+            for m in 0..k {
+                load += combination[m] * problem.load[m];
+                scale += (combination[m] * problem.load_scale[m]).abs();
+            }
+            if load.abs() > LOAD_ROUNDING * scale {
+                return Err(SolveFailure::Unheld { motions: combination.to_vec() });
+            }
         }
         let mut counts = SolveCounts::default();
         // Residual of the last place that was kept; where to go back to if a Newton step does not reduce it.
@@ -125,7 +129,10 @@ impl ContactSolver {
                 ),
             }));
             view.relief(unknowns.forces, unknowns.relief);
-            let done = self.solve_held(&view, &steps.free, scale, unknowns)?;
+            let done = match self.solve_held(&view, &steps.free, scale, unknowns) {
+                Ok(done) => done,
+                Err(failure) => return Err(steps.escape(system, problem, &held.springs).unwrap_or(failure)),
+            };
             counts.equilibrium_iterations += done.equilibrium_iterations;
             counts.severe_discontinuity_iterations += done.severe_discontinuity_iterations;
             counts.factorizations += done.factorizations;
@@ -159,7 +166,8 @@ impl ContactSolver {
                 continue;
             }
             if unknowns.springs.iter().zip(&system.springs).any(|(now, first)| *now < SOFTEST * first) {
-                return Err(SolveFailure::Unheld { motions: steps.residual.clone() });
+                let way = steps.residual.iter().zip(&held.springs).map(|(r, spring)| r / spring).collect();
+                return Err(SolveFailure::Unheld { motions: way });
             }
             last = worst;
             if hold != Hold::None && trusted && !stiffened {
@@ -170,7 +178,9 @@ impl ContactSolver {
                 trusted = true;
             }
         }
-        Err(SolveFailure::NotConverged { points: (0..n as u32).filter(|&i| unknowns.closed[i as usize]).collect() })
+        let closed = (0..n as u32).filter(|&i| unknowns.closed[i as usize]).collect();
+        let failure = SolveFailure::NotConverged { points: closed };
+        Err(steps.escape(system, problem, &held.springs).unwrap_or(failure))
     }
 
     /// Newton step on the motions with the closed points as they are: `S⁻¹ (Rᵀ f − Dᵀ F)` with the stiffness
@@ -247,8 +257,9 @@ impl HeldCompliance {
         self.springs.clear();
         self.springs.extend_from_slice(springs);
         let Structure::Dense(compliance) = &system.structure else { return false };
-        self.compliance.clone_from(compliance);
-        let n = self.compliance.rows;
+        let n = compliance.rows;
+        (self.compliance.rows, self.compliance.columns) = (n, n);
+        self.compliance.values.clone_from(&compliance.values);
         for (m, spring) in springs.iter().enumerate().filter(|&(m, _)| system.resisted[m]) {
             let d = system.gap_motions.column(m);
             for j in (0..n).filter(|&j| d[j] != 0.0) {
@@ -296,6 +307,17 @@ impl Steps {
         system.gap_motions.multiply_add(&self.place, &mut self.free);
         // Far away places round more: a twentieth of their size keeps the tolerances above that.
         scale.max(0.05 * largest(&self.free))
+    }
+
+    /// A proof that nothing holds the way the springs give: the loads push along it, and no overclosure gets larger on it.
+    fn escape(&self, system: &ContactSystem, problem: Problem<'_>, springs: &[f64]) -> Option<SolveFailure> {
+        let way: Vec<f64> = self.residual.iter().zip(springs).map(|(r, spring)| r / spring).collect();
+        let pushed: f64 = way.iter().zip(problem.load).map(|(z, load)| z * load).sum();
+        let mut overclosures = vec![0.0; system.points.len()];
+        system.gap_motions.multiply_add(&way, &mut overclosures);
+        let largest = overclosures.iter().fold(0.0f64, |m, h| m.max(h.abs()));
+        let opens = overclosures.iter().all(|h| *h <= 1e-9 * largest);
+        (opens && pushed > 0.0).then_some(SolveFailure::Unheld { motions: way })
     }
 
     /// What the springs carry; returns the largest of it against the forces in the balance.

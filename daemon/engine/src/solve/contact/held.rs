@@ -32,6 +32,8 @@ const FORCE_TOLERANCE: f64 = 1e-12;
 const OVERCLOSURE_TOLERANCE: f64 = 1e-13;
 /// Remaining overclosure, on the same scale, above which a hard constraint that depends on others contradicts them.
 const CONFLICT_TOLERANCE: f64 = 1e-9;
+/// The same against the size of the model: rounding of coordinates where surfaces only touch.
+const CONFLICT_ROUNDING: f64 = 1e-14;
 /// Contact stiffness, relative to that of the bodies at the point, below which a point carries no force worth having.
 const NEGLIGIBLE_STIFFNESS: f64 = 1e-30;
 /// Line search: accepted growth of the slope of Π beyond its minimum, relative to the slope at the start.
@@ -369,11 +371,12 @@ impl ContactSolver {
         if dense && self.factor_rows.len() == self.active.len() {
             return Ok(());
         }
+        let limit = (CONFLICT_TOLERANCE * free_scale).max(CONFLICT_ROUNDING * view.extent);
         let conflict = |&i: &u32| -> Option<(u32, f64)> {
             let overclosure = free[i as usize] - self.relief_trial[i as usize];
             // Conjugate gradients do not tell which points depend on others: all are looked at.
             let dependent = view.is_hard(i as usize) && (!dense || self.factor_rows.binary_search(&i).is_err());
-            (dependent && overclosure > CONFLICT_TOLERANCE * free_scale).then_some((i, overclosure))
+            (dependent && overclosure > limit).then_some((i, overclosure))
         };
         let points: Vec<_> = self.active.iter().filter_map(conflict).collect();
         if points.is_empty() { Ok(()) } else { Err(SolveFailure::Infeasible { points }) }

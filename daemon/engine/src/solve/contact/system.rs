@@ -32,8 +32,12 @@ pub struct ContactSystem {
     pub behaviors: Vec<NormalBehavior>,
     /// `D`: points x motions of bodies that only contact holds.
     pub gap_motions: Dense,
-    /// Whether some point resists the motion.
+    /// Whether contact resists the motion on its own.
     pub resisted: Vec<bool>,
+    /// `Z`: combinations of the motions that no point resists.
+    pub loose: Dense,
+    /// Size of the model: what rounding of coordinates is judged against [length].
+    pub extent: f64,
     /// Springs on the motions to begin with: soft against the bodies where contact may hold them [force/length].
     pub springs: Vec<f64>,
 }
@@ -58,7 +62,7 @@ impl ContactSystem {
             Structure::Dense(w) => Compliance::Dense(w),
             Structure::Sparse(sparse) => Compliance::Sparse(sparse, None),
         });
-        View { compliance, points: &self.points, behaviors: &self.behaviors }
+        View { compliance, points: &self.points, behaviors: &self.behaviors, extent: self.extent }
     }
 
     /// Final overclosures `h_free − W F + D α` from `free` and the `relief` `W F`. The one place where they are computed, so that a

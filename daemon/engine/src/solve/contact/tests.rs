@@ -37,6 +37,8 @@ fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize
         gap_motions,
         resisted: vec![],
         springs: vec![],
+        loose: Dense::default(),
+        extent: 0.0,
     }
 }
 

@@ -31,6 +31,7 @@ pub(super) struct View<'a> {
     pub compliance: Compliance<'a>,
     pub points: &'a [PointBehavior],
     pub behaviors: &'a [NormalBehavior],
+    pub extent: f64,
 }
 
 impl View<'_> {

@@ -14,6 +14,9 @@ use crate::solve::ordering;
 /// Spring on a motion in this matrix, relative to its mean diagonal entry, below which pivots would be rounding.
 const SPRING_MIN: f64 = 1e-9;
 
+/// Spring on a motion that stays where it is, relative to the mean diagonal entry.
+const RIGID: f64 = 1e3;
+
 /// Stiffness of the whole structure with room for every contact point.
 pub struct Coupled {
     /// Bodies only.
@@ -161,8 +164,8 @@ impl Coupled {
             let k = anchors.inverse.rows;
             let spring = |m: usize| match resisted[anchors.first + m] {
                 true => springs[anchors.first + m].max(SPRING_MIN * self.mean_stiffness),
-                // No contact point feels it: any spring will do.
-                false => self.mean_stiffness,
+                // It stays where it is while the others move.
+                false => RIGID * self.mean_stiffness,
             };
             let mut entries = anchors.entries.iter();
             for j in 0..k {
