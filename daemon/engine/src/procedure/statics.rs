@@ -8,10 +8,9 @@ use crate::simulation::{
 use crate::solve::condensed::Response;
 use crate::solve::contact::{Problem, SolveCounts, SolveFailure, Unknowns};
 
-/// Automatic increments: growth after two easy increments in a row (Abaqus: 1.5 after two).
+/// Automatic increments: growth after two increments in a row without a cutback (Abaqus: 1.5 after two easy ones). How many
+/// iterations they took says nothing: each solve is convex and ends, from any start.
 const GROWTH: f64 = 1.5;
-/// Equilibrium iterations of an easy increment (Abaqus: I_G = 4).
-const EASY_ITERATIONS: u32 = 4;
 /// Automatic increments: what is left of an increment that failed (Abaqus: 0.25).
 const CUTBACK: f64 = 0.25;
 /// Two times closer than this part of the period are the same time: sums of increments round.
@@ -272,8 +271,7 @@ impl Simulation {
         total.equilibrium_iterations += counts.equilibrium_iterations;
         total.severe_discontinuity_iterations += counts.severe_discontinuity_iterations;
         total.factorizations += counts.factorizations;
-        let easy = attempt == 1 && counts.equilibrium_iterations <= EASY_ITERATIONS;
-        self.state.easy_increments = if easy { self.state.easy_increments + 1 } else { 0 };
+        self.state.easy_increments = if attempt == 1 { self.state.easy_increments + 1 } else { 0 };
         if clipped {
             // Off the grid: the next increments are counted from here.
             self.set_increment(self.state.increment_next);

@@ -3,8 +3,6 @@
 use super::view::{Compliance, Springs, View};
 use crate::solve::sparse::{self, ActiveSystem, CoupledFactor, SparseStructure};
 
-/// Compliance that stands in for none in the preconditioner, relative to that of the bodies at the point.
-const STAND_IN: f64 = 1e-4;
 /// Springs that differ by more than this factor from those of the factor need a new one.
 const SPRING_CHANGE: f64 = 10.0;
 
@@ -20,8 +18,8 @@ pub(super) struct SparseWork {
 }
 
 impl SparseWork {
-    /// Solves `(W + C) F = right` on the active points: `compliances` in their order, 0 for hard ones. `forces` holds the start
-    /// and receives the solution. False when the structure cannot be factored.
+    /// Solves `(W + C) F = right` on the active points: `compliances` in their order, 0 for hard ones. `forces` receives the
+    /// solution. False when the structure cannot be factored.
     pub fn solve(
         &mut self,
         view: &View<'_>,
@@ -53,7 +51,8 @@ impl SparseWork {
                     out[k] = relief[i as usize] + compliances[k] * x[k];
                 }
             };
-            let mut system = ActiveSystem { product: &mut product, coupled: &structure.coupled, factor };
+            let mut approximate = |r: &[f64], z: &mut [f64]| factor.apply(&structure.coupled, r, z);
+            let mut system = ActiveSystem { product: &mut product, approximate: &mut approximate };
             sparse::solve(&mut system, right, forces);
         }
         self.product_forces = all;
@@ -70,10 +69,9 @@ impl SparseWork {
         active: &[u32],
         compliances: &[f64],
     ) -> bool {
-        let stiff = |i: u32, c: f64| {
-            let own = view.own(i as usize);
-            c.max(STAND_IN * if own > 0.0 { own } else { 1.0 / structure.coupled.mean_stiffness() })
-        };
+        let area = |i: u32| view.points[i as usize].area;
+        let shared = sparse::stand_in(active.iter().map(|&i| (structure.own[i as usize], area(i))));
+        let stiff = |i: u32, c: f64| c.max(shared / area(i));
         let wanted: Vec<(u32, f64)> = active.iter().zip(compliances).map(|(&i, &c)| (i, stiff(i, c))).collect();
         let of_motions = springs.map_or(&[][..], |s| s.springs);
         let near = |(a, b): (&f64, &f64)| (a / b).max(b / a) <= SPRING_CHANGE;

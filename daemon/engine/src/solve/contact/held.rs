@@ -20,6 +20,7 @@ use super::{SolveCounts, SolveFailure, Unknowns};
 use crate::law::{NormalBehavior, PressureLaw};
 use crate::solve::contact::ContactSystem;
 use crate::solve::linear::{self, DenseScratch};
+use crate::solve::sparse::{self, ActiveSystem};
 
 /// Iterations of the damped Newton method before an attempt is given up. Piecewise linear laws end in a handful,
 /// the exponential law in about ten; an order of magnitude above that nothing is gained.
@@ -58,8 +59,8 @@ pub struct ContactSolver {
     factor_compliance: Vec<f64>,
     factor_rows: Vec<u32>,
     factors: u32,
-    /// Forces at the start of the solve.
-    start: Vec<f64>,
+    /// Whether the factor has a compliance at hard points because they depend on each other.
+    shares: bool,
     sparse: SparseWork,
     scratch: DenseScratch,
     pub(super) balance: BalanceWork,
@@ -110,8 +111,6 @@ impl ContactSolver {
         let n = view.points.len();
         let mut counts = SolveCounts::default();
         let has_hard = (0..n).any(|i| view.is_hard(i));
-        self.start.clear();
-        self.start.extend_from_slice(forces);
         let factorizations = self.sparse.factorizations;
         for i in 0..n {
             self.is_active[i] = view.is_hard(i) && closed[i];
@@ -248,13 +247,9 @@ impl ContactSolver {
             self.factors += 1;
             self.fill_factor(view);
             let size = self.factor_rows.len();
-            if !linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch) {
-                // Dependent constraints (one node in two pairs, both sides prescribed): keep an independent subset.
-                self.keep_independent(view);
-                self.fill_factor(view);
-                let size = self.factor_rows.len();
-                let positive = linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
-                assert!(positive, "the rows left by the pivot check are independent");
+            self.shares = !linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
+            if self.shares {
+                self.factor_sharing(view);
             }
         }
         self.right.clear();
@@ -262,14 +257,14 @@ impl ContactSolver {
             let onset = if view.is_hard(i as usize) { 0.0 } else { self.onset[i as usize] };
             self.right.push(free[i as usize] - onset);
         }
-        linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
+        self.solve_rows(view);
         self.trial[..n].fill(0.0);
         for (&i, &force) in self.factor_rows.iter().zip(&self.right) {
             self.trial[i as usize] = force;
         }
     }
 
-    /// The same by sparse solves; starts from the forces of the last model.
+    /// The same by sparse solves.
     fn solve_active_sparse(&mut self, view: &View<'_>, free: &[f64]) {
         self.right.clear();
         self.factor_compliance.clear();
@@ -278,7 +273,7 @@ impl ContactSolver {
             let hard = view.is_hard(i as usize);
             self.right.push(free[i as usize] - if hard { 0.0 } else { self.onset[i as usize] });
             self.factor_compliance.push(if hard { 0.0 } else { self.compliance[i as usize] });
-            forces.push(self.start[i as usize]);
+            forces.push(0.0);
         }
         let solved = self.sparse.solve(view, &self.active, &self.factor_compliance, &self.right, &mut forces);
         self.factor_rows.clone_from(&self.active);
@@ -305,7 +300,7 @@ impl ContactSolver {
             }
             self.right = x;
         } else {
-            linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
+            self.solve_rows(view);
         }
         for (&i, x) in self.factor_rows.iter().zip(&self.right) {
             out[i as usize] = *x;
@@ -339,44 +334,60 @@ impl ContactSolver {
         }
     }
 
-    /// Reduces the factor's rows to those whose pivot is more than rounding.
-    fn keep_independent(&mut self, view: &View<'_>) {
+    /// Points that depend on each other (one node in two pairs, both sides prescribed): factors `W + C` with a small compliance at
+    /// hard points, inverse to their areas.
+    fn factor_sharing(&mut self, view: &View<'_>) {
         self.fill_factor(view);
         let size = self.factor_rows.len();
-        let a = &mut self.factor;
-        let diagonal: Vec<f64> = (0..size).map(|i| a[i * size + i]).collect();
-        let mut kept = Vec::with_capacity(size);
-        for j in 0..size {
-            let pivot = a[j * size + j];
-            // A thousand times the limit of the dense factorisation, so that what is kept passes there.
-            if pivot.is_nan() || pivot <= 1e-9 * diagonal[j] || diagonal[j] <= 0.0 {
-                continue;
-            }
-            kept.push(self.factor_rows[j]);
-            for k in j + 1..size {
-                let f = a[j * size + k] / pivot;
-                if f != 0.0 {
-                    for i in k..size {
-                        a[k * size + i] -= f * a[j * size + i];
-                    }
-                }
+        let at = |&i: &u32| (view.own(i as usize), view.points[i as usize].area);
+        let shared = sparse::stand_in(self.factor_rows.iter().map(at));
+        for (k, &i) in self.factor_rows.iter().enumerate() {
+            if view.is_hard(i as usize) {
+                self.factor[k * size + k] += shared / view.points[i as usize].area;
             }
         }
-        self.factor_rows = kept;
+        let positive = linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
+        debug_assert!(positive, "a positive diagonal on a semi-definite matrix");
     }
 
-    /// A hard point that was left out as dependent must be satisfied by the others.
+    /// `right <- (W + C)⁻¹ right` on the rows of the factor; where they depend on each other, the solution that shares forces in
+    /// proportion to areas.
+    fn solve_rows(&mut self, view: &View<'_>) {
+        let size = self.factor_rows.len();
+        if !self.shares {
+            return linear::cholesky_solve(&self.factor, size, &mut self.right);
+        }
+        let Compliance::Dense(w) = view.compliance else { return };
+        let (rows, compliances, factor) = (&self.factor_rows, &self.factor_compliance, &self.factor);
+        let mut product = |x: &[f64], out: &mut [f64]| {
+            for (o, (c, x)) in out.iter_mut().zip(compliances.iter().zip(x)) {
+                *o = c * x;
+            }
+            for (&j, x) in rows.iter().zip(x) {
+                let column = w.column(j as usize);
+                out.iter_mut().zip(rows).for_each(|(o, &i)| *o += column[i as usize] * x);
+            }
+        };
+        let mut approximate = |r: &[f64], z: &mut [f64]| {
+            z.copy_from_slice(r);
+            linear::cholesky_solve(factor, size, z);
+        };
+        let mut system = ActiveSystem { product: &mut product, approximate: &mut approximate };
+        let mut forces = vec![0.0; size];
+        sparse::solve(&mut system, &self.right, &mut forces);
+        self.right = forces;
+    }
+
+    /// Hard points that depend on each other must be satisfied all the same.
     fn check_conflicts(&self, view: &View<'_>, free: &[f64], free_scale: f64) -> Result<(), SolveFailure> {
-        let dense = matches!(view.compliance, Compliance::Dense(_));
-        if dense && self.factor_rows.len() == self.active.len() {
+        // Conjugate gradients do not tell which points depend on others: all are looked at.
+        if !self.shares && matches!(view.compliance, Compliance::Dense(_)) {
             return Ok(());
         }
         let limit = (CONFLICT_TOLERANCE * free_scale).max(CONFLICT_ROUNDING * view.extent);
         let conflict = |&i: &u32| -> Option<(u32, f64)> {
             let overclosure = free[i as usize] - self.relief_trial[i as usize];
-            // Conjugate gradients do not tell which points depend on others: all are looked at.
-            let dependent = view.is_hard(i as usize) && (!dense || self.factor_rows.binary_search(&i).is_err());
-            (dependent && overclosure > limit).then_some((i, overclosure))
+            (view.is_hard(i as usize) && overclosure > limit).then_some((i, overclosure))
         };
         let points: Vec<_> = self.active.iter().filter_map(conflict).collect();
         if points.is_empty() { Ok(()) } else { Err(SolveFailure::Infeasible { points }) }

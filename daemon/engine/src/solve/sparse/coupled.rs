@@ -119,11 +119,6 @@ impl Coupled {
         self.matrix.len()
     }
 
-    /// Mean diagonal entry [force/length].
-    pub fn mean_stiffness(&self) -> f64 {
-        self.mean_stiffness
-    }
-
     /// Numbers that the structure and one factorisation of it hold.
     pub fn numbers(&self) -> usize {
         self.symbolic.size().values + 4 * self.matrix.values.len()

@@ -13,7 +13,7 @@
 mod conjugate;
 mod coupled;
 
-pub use conjugate::{ActiveSystem, solve};
+pub use conjugate::{ActiveSystem, solve, stand_in};
 pub use coupled::{Coupled, CoupledFactor};
 
 use std::sync::Arc;
