@@ -29,8 +29,12 @@ const ITERATIONS_MAX: u32 = 200;
 const FULL_EXCHANGES_WITHOUT_GAIN: u32 = 3;
 /// Out-of-balance contact force, relative to the largest contact force, at which the laws are satisfied.
 const FORCE_TOLERANCE: f64 = 1e-12;
+/// Contact force, relative to the largest, of a point that is not called closed.
+const STATUS_ROUNDING: f64 = 1e-11;
 /// Overclosure of a hard point, relative to the largest overclosure without contact, that is rounding.
 const OVERCLOSURE_TOLERANCE: f64 = 1e-13;
+/// Rounding of forces and overclosures that conjugate gradients find, against that of a factor.
+const ITERATIVE_ROUNDING: f64 = 100.0;
 /// Remaining overclosure, on the same scale, above which a hard constraint that depends on others contradicts them.
 const CONFLICT_TOLERANCE: f64 = 1e-9;
 /// The same against the size of the model: rounding of coordinates where surfaces only touch.
@@ -148,6 +152,9 @@ impl ContactSolver {
             }
             if fraction == 1.0 && self.is_balanced(view, free, forces, overclosures) {
                 counts.factorizations = self.sparse.factorizations - factorizations;
+                // At the kink of a law rounding would choose the status: a force that is rounding closes nothing.
+                let negligible = STATUS_ROUNDING * forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+                (0..n).for_each(|i| closed[i] = closed[i] && forces[i] > negligible);
                 // The last step was taken whole: `relief` is `W F` as `relief` of the view computes it.
                 return Ok(counts);
             }
@@ -190,11 +197,13 @@ impl ContactSolver {
             self.solve_active(view, free);
             view.relief(&self.trial, &mut self.relief_trial);
             let force_scale = self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-            let slack = OVERCLOSURE_TOLERANCE * free_scale;
+            let iterative = self.shares || !matches!(view.compliance, Compliance::Dense(_));
+            let rounding = if iterative { ITERATIVE_ROUNDING } else { 1.0 };
+            let slack = rounding * OVERCLOSURE_TOLERANCE * free_scale;
             self.violating.clear();
             for i in (0..n).filter(|&i| view.is_hard(i)) {
                 let violates = if self.is_active[i] {
-                    self.trial[i] < -FORCE_TOLERANCE * force_scale
+                    self.trial[i] < -rounding * FORCE_TOLERANCE * force_scale
                 } else {
                     free[i] - self.relief_trial[i] > slack
                 };
