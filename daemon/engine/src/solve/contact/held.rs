@@ -20,7 +20,6 @@ use super::{SolveCounts, SolveFailure, Unknowns};
 use crate::law::{NormalBehavior, PressureLaw};
 use crate::solve::contact::ContactSystem;
 use crate::solve::linear::{self, DenseScratch};
-use crate::solve::sparse::{self, ActiveSystem};
 
 /// Iterations of the damped Newton method before an attempt is given up. Piecewise linear laws end in a handful,
 /// the exponential law in about ten; an order of magnitude above that nothing is gained.
@@ -36,7 +35,7 @@ const OVERCLOSURE_TOLERANCE: f64 = 1e-13;
 /// Rounding of forces and overclosures that conjugate gradients find, against that of a factor.
 const ITERATIVE_ROUNDING: f64 = 100.0;
 /// Remaining overclosure, on the same scale, above which a hard constraint that depends on others contradicts them.
-const CONFLICT_TOLERANCE: f64 = 1e-9;
+const CONFLICT_TOLERANCE: f64 = 1e-7;
 /// The same against the size of the model: rounding of coordinates where surfaces only touch.
 const CONFLICT_ROUNDING: f64 = 1e-14;
 /// Contact stiffness, relative to that of the bodies at the point, below which a point carries no force worth having.
@@ -63,8 +62,6 @@ pub struct ContactSolver {
     factor_compliance: Vec<f64>,
     factor_rows: Vec<u32>,
     factors: u32,
-    /// Whether the factor has a compliance at hard points because they depend on each other.
-    shares: bool,
     sparse: SparseWork,
     scratch: DenseScratch,
     pub(super) balance: BalanceWork,
@@ -197,7 +194,7 @@ impl ContactSolver {
             self.solve_active(view, free);
             view.relief(&self.trial, &mut self.relief_trial);
             let force_scale = self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-            let iterative = self.shares || !matches!(view.compliance, Compliance::Dense(_));
+            let iterative = !matches!(view.compliance, Compliance::Dense(_));
             let rounding = if iterative { ITERATIVE_ROUNDING } else { 1.0 };
             let slack = rounding * OVERCLOSURE_TOLERANCE * free_scale;
             self.violating.clear();
@@ -256,9 +253,13 @@ impl ContactSolver {
             self.factors += 1;
             self.fill_factor(view);
             let size = self.factor_rows.len();
-            self.shares = !linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
-            if self.shares {
-                self.factor_sharing(view);
+            if !linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch) {
+                // Dependent constraints (one node in two pairs, both sides prescribed): keep an independent subset.
+                self.keep_independent(view);
+                self.fill_factor(view);
+                let size = self.factor_rows.len();
+                let positive = linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
+                assert!(positive, "the rows left by the pivot check are independent");
             }
         }
         self.right.clear();
@@ -266,7 +267,7 @@ impl ContactSolver {
             let onset = if view.is_hard(i as usize) { 0.0 } else { self.onset[i as usize] };
             self.right.push(free[i as usize] - onset);
         }
-        self.solve_rows(view);
+        linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
         self.trial[..n].fill(0.0);
         for (&i, &force) in self.factor_rows.iter().zip(&self.right) {
             self.trial[i as usize] = force;
@@ -309,7 +310,7 @@ impl ContactSolver {
             }
             self.right = x;
         } else {
-            self.solve_rows(view);
+            linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
         }
         for (&i, x) in self.factor_rows.iter().zip(&self.right) {
             out[i as usize] = *x;
@@ -343,60 +344,47 @@ impl ContactSolver {
         }
     }
 
-    /// Points that depend on each other (one node in two pairs, both sides prescribed): factors `W + C` with a small compliance at
-    /// hard points, inverse to their areas.
-    fn factor_sharing(&mut self, view: &View<'_>) {
+    /// Reduces the factor's rows to those whose pivot is more than rounding.
+    fn keep_independent(&mut self, view: &View<'_>) {
         self.fill_factor(view);
         let size = self.factor_rows.len();
-        let at = |&i: &u32| (view.own(i as usize), view.points[i as usize].area);
-        let shared = sparse::stand_in(self.factor_rows.iter().map(at));
-        for (k, &i) in self.factor_rows.iter().enumerate() {
-            if view.is_hard(i as usize) {
-                self.factor[k * size + k] += shared / view.points[i as usize].area;
+        let a = &mut self.factor;
+        let diagonal: Vec<f64> = (0..size).map(|i| a[i * size + i]).collect();
+        let mut kept = Vec::with_capacity(size);
+        for j in 0..size {
+            let pivot = a[j * size + j];
+            // A thousand times the limit of the dense factorisation, so that what is kept passes there.
+            if pivot.is_nan() || pivot <= 1e-9 * diagonal[j] || diagonal[j] <= 0.0 {
+                continue;
+            }
+            kept.push(self.factor_rows[j]);
+            for k in j + 1..size {
+                let f = a[j * size + k] / pivot;
+                if f != 0.0 {
+                    for i in k..size {
+                        a[k * size + i] -= f * a[j * size + i];
+                    }
+                }
             }
         }
-        let positive = linear::cholesky_in_place(&mut self.factor, size, &mut self.scratch);
-        debug_assert!(positive, "a positive diagonal on a semi-definite matrix");
+        self.factor_rows = kept;
     }
 
-    /// `right <- (W + C)⁻¹ right` on the rows of the factor; where they depend on each other, the solution that shares forces in
-    /// proportion to areas.
-    fn solve_rows(&mut self, view: &View<'_>) {
-        let size = self.factor_rows.len();
-        if !self.shares {
-            return linear::cholesky_solve(&self.factor, size, &mut self.right);
-        }
-        let Compliance::Dense(w) = view.compliance else { return };
-        let (rows, compliances, factor) = (&self.factor_rows, &self.factor_compliance, &self.factor);
-        let mut product = |x: &[f64], out: &mut [f64]| {
-            for (o, (c, x)) in out.iter_mut().zip(compliances.iter().zip(x)) {
-                *o = c * x;
-            }
-            for (&j, x) in rows.iter().zip(x) {
-                let column = w.column(j as usize);
-                out.iter_mut().zip(rows).for_each(|(o, &i)| *o += column[i as usize] * x);
-            }
-        };
-        let mut approximate = |r: &[f64], z: &mut [f64]| {
-            z.copy_from_slice(r);
-            linear::cholesky_solve(factor, size, z);
-        };
-        let mut system = ActiveSystem { product: &mut product, approximate: &mut approximate };
-        let mut forces = vec![0.0; size];
-        sparse::solve(&mut system, &self.right, &mut forces);
-        self.right = forces;
-    }
-
-    /// Hard points that depend on each other must be satisfied all the same.
+    /// A hard point that was left out as dependent must be satisfied by the others.
     fn check_conflicts(&self, view: &View<'_>, free: &[f64], free_scale: f64) -> Result<(), SolveFailure> {
-        // Conjugate gradients do not tell which points depend on others: all are looked at.
-        if !self.shares && matches!(view.compliance, Compliance::Dense(_)) {
+        let dense = matches!(view.compliance, Compliance::Dense(_));
+        if dense && self.factor_rows.len() == self.active.len() {
             return Ok(());
         }
         let limit = (CONFLICT_TOLERANCE * free_scale).max(CONFLICT_ROUNDING * view.extent);
         let conflict = |&i: &u32| -> Option<(u32, f64)> {
             let overclosure = free[i as usize] - self.relief_trial[i as usize];
-            (view.is_hard(i as usize) && overclosure > limit).then_some((i, overclosure))
+            {
+                // Conjugate gradients do not tell which points depend on others: all are looked at.
+                let dependent = view.is_hard(i as usize) && (!dense || self.factor_rows.binary_search(&i).is_err());
+                dependent && overclosure > limit
+            }
+            .then_some((i, overclosure))
         };
         let points: Vec<_> = self.active.iter().filter_map(conflict).collect();
         if points.is_empty() { Ok(()) } else { Err(SolveFailure::Infeasible { points }) }
