@@ -149,6 +149,18 @@ CASES = [
         "1e-9",
     ),
     Case(
+        "oracle-floating",
+        "The solver shall find forces and displacements of bodies that contact holds, with equations, springs and bars.",
+        "dense system with Lagrange multipliers on 500 seeded random decks, every state with its proof",
+        "1e-9",
+    ),
+    Case(
+        "unheld",
+        "The solver shall name body and motion where a load moves a body that nothing can hold.",
+        "20 seeded decks with the proof that no equilibrium exists",
+        "exit code 2 or 3, with the names",
+    ),
+    Case(
         "oracle-exponential",
         "The solver shall find the minimum of the potential of structure and exponential contact.",
         "convex minimisation on 60 seeded random decks",

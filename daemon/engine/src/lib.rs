@@ -33,7 +33,11 @@ mod procedure;
 mod solve;
 
 #[cfg(test)]
+mod adjust_tests;
+#[cfg(test)]
 mod column_tests;
+#[cfg(test)]
+mod load_pattern_tests;
 #[cfg(test)]
 mod patch_tests;
 #[cfg(test)]

@@ -38,7 +38,10 @@ fn bad_decks_are_refused_with_their_diagnostics() {
         ("cut in the middle", DECK[..DECK.len() / 2].to_owned()),
         ("unknown set", replaced("*BOUNDARY\nNBOT", "*BOUNDARY\nNOWHERE")),
         ("missing material", replaced("MATERIAL=RUBBER\n*SOLID", "MATERIAL=STONE\n*SOLID")),
-        ("a body that nothing holds", replaced("NBOT, 1, 3", "NBOT, 3, 3").replacen("NTOP, 1, 2\n", "", 1)),
+        (
+            "a body that is loaded where nothing holds it",
+            replaced("NTOP, 3, 3, -0.02", "NTOP, 3, 3, -0.02\n*CLOAD\nNTOP, 1, 5.").replacen("NTOP, 1, 2\n", "", 1),
+        ),
         ("include", replaced("*STEP", "*INCLUDE, INPUT=other.inp\n*STEP")),
     ];
     for (what, deck) in decks {
