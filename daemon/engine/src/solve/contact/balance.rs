@@ -23,6 +23,8 @@ const BALANCED_STALLED: f64 = 1e-10;
 const POLISHING: f64 = 0.1;
 /// A step that leaves more than this part of the force in the springs is slow.
 const SLOW: f64 = 0.2;
+/// Forces in the balance of a motion, relative to the largest forces of the model, below which they are not its scale.
+const SCALE_MIN: f64 = 1e-3;
 /// Springs become this much softer after a slow step.
 const SOFTENING: f64 = 1e-2;
 /// Springs this much softer than at the start that still carry load: nothing resists the motion.
@@ -64,6 +66,7 @@ struct Steps {
     free: Vec<f64>,
     place: Vec<f64>,
     residual: Vec<f64>,
+    scales: Vec<f64>,
     /// `S` in units of the springs.
     stiffness: Dense,
     factor: Vec<f64>,
@@ -322,14 +325,15 @@ impl Steps {
 
     /// What the springs carry; returns the largest of it against the forces in the balance.
     fn measure(&mut self, system: &ContactSystem, problem: Problem<'_>, unknowns: &Unknowns<'_>) -> f64 {
-        let mut worst = 0.0f64;
         let k = problem.load.len();
         self.residual.clear();
         self.newton.resize(k, 0.0);
         self.safe.resize(k, 0.0);
+        self.scales.clear();
         for m in 0..k {
             if !system.resisted[m] {
                 self.residual.push(0.0);
+                self.scales.push(0.0);
                 continue;
             }
             let (mut sum, mut scale) = (0.0, problem.load_scale[m]);
@@ -337,12 +341,13 @@ impl Steps {
                 sum += d * f;
                 scale += (d * f).abs();
             }
-            let residual = problem.load[m] - sum;
-            if residual != 0.0 {
-                worst = worst.max(residual.abs() / scale);
-            }
-            self.residual.push(residual);
+            self.residual.push(problem.load[m] - sum);
+            self.scales.push(scale);
         }
-        worst
+        // A motion that carries next to nothing is judged by what goes on elsewhere.
+        let forces = unknowns.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        let least = SCALE_MIN * self.scales.iter().fold(forces, |m, s| m.max(*s));
+        let relative = |(r, s): (&f64, &f64)| if *r == 0.0 { 0.0 } else { r.abs() / s.max(least) };
+        self.residual.iter().zip(&self.scales).map(relative).fold(0.0f64, f64::max)
     }
 }
