@@ -11,6 +11,7 @@
 
 use super::view::{Compliance, Springs, View};
 use super::{ContactSolver, ContactSystem, Problem, SPRING_RATIO, SolveCounts, SolveFailure, Structure, Unknowns};
+use crate::law::{NormalBehavior, PressureLaw};
 use crate::solve::linear::{self, Dense, DenseScratch};
 
 /// Steps before an attempt is given up; five are usual.
@@ -25,6 +26,8 @@ const POLISHING: f64 = 0.1;
 const SLOW: f64 = 0.2;
 /// Forces in the balance of a motion, relative to the largest forces of the model, below which they are not its scale.
 const SCALE_MIN: f64 = 1e-3;
+/// The same against the force that overclosures would cause if nothing moved: a body that swings out of the way ends without any.
+const UNRELIEVED_MIN: f64 = 1e-6;
 /// Springs become this much softer after a slow step.
 const SOFTENING: f64 = 1e-2;
 /// Springs this much softer than at the start that still carry load: nothing resists the motion.
@@ -346,7 +349,15 @@ impl Steps {
         }
         // A motion that carries next to nothing is judged by what goes on elsewhere.
         let forces = unknowns.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-        let least = SCALE_MIN * self.scales.iter().fold(forces, |m, s| m.max(*s));
+        let view = system.held(None);
+        let unrelieved = (problem.free.iter().enumerate())
+            .map(|(i, h)| match &system.behaviors[system.points[i].behavior] {
+                NormalBehavior::Hard => h.max(0.0) / view.own(i),
+                NormalBehavior::Softened(law) => system.points[i].area * law.evaluate(*h).pressure,
+            })
+            .filter(|force| force.is_finite())
+            .fold(0.0f64, f64::max);
+        let least = (SCALE_MIN * self.scales.iter().fold(forces, |m, s| m.max(*s))).max(UNRELIEVED_MIN * unrelieved);
         let relative = |(r, s): (&f64, &f64)| if *r == 0.0 { 0.0 } else { r.abs() / s.max(least) };
         self.residual.iter().zip(&self.scales).map(relative).fold(0.0f64, f64::max)
     }
