@@ -119,9 +119,17 @@ UNLOADED = [
         "body on another", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "NBOT, 3, 3, -0.02\n", "", ("UPPER", "rotation about 3")
     ),
     Refusal("body held by one node", "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n", "15, 3, 3, -0.02\n", "", ("UPPER", "along 1")),
+    # It swings out of the way until contact carries nothing.
+    Refusal("pivoted body", "NBOT, 1, 3\n", "1, 1, 3\n", "", ("LOWER", "rotation")),
 ]
 LOADED = [
-    Refusal("pivoted body", "NBOT, 1, 3\n", "1, 1, 3\n", "", ("LOWER", "neither supports nor contact")),
+    Refusal(
+        "lifted body",
+        "NTOP, 1, 2\nNTOP, 3, 3, -0.02\n",
+        "NTOP, 1, 2\n*CLOAD\nNTOP, 3, 5.\n",
+        "",
+        ("UPPER", "neither supports nor contact"),
+    ),
 ]
 
 
