@@ -78,6 +78,10 @@ struct Steps {
     newton: Vec<f64>,
     /// Motions that the springs give: a step that always leads on.
     safe: Vec<f64>,
+    /// The last balance found.
+    kept_forces: Vec<f64>,
+    kept_closed: Vec<bool>,
+    kept_motions: Vec<f64>,
 }
 
 impl ContactSolver {
@@ -122,6 +126,8 @@ impl ContactSolver {
         let mut counts = SolveCounts::default();
         // Residual of the last place that was kept; where to go back to if a Newton step does not reduce it.
         let (mut last, mut retreat, mut trusted, mut polished) = (f64::INFINITY, false, true, false);
+        // Whether a Newton step has been taken: then also weakly held motions stand where they should.
+        let (mut refined, mut kept) = (false, false);
         for _ in 0..STEPS_MAX {
             if held.hold(system, unknowns.springs) {
                 self.forget_factor();
@@ -137,6 +143,15 @@ impl ContactSolver {
             view.relief(unknowns.forces, unknowns.relief);
             let done = match self.solve_held(&view, &steps.free, scale, unknowns) {
                 Ok(done) => done,
+                // A point at the kink of its law may flip for ever by rounding; a balance found before that stands.
+                Err(_) if kept => {
+                    unknowns.forces.copy_from_slice(&steps.kept_forces);
+                    unknowns.closed.copy_from_slice(&steps.kept_closed);
+                    unknowns.motions.copy_from_slice(&steps.kept_motions);
+                    system.relief(unknowns.forces, unknowns.relief);
+                    system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
+                    return Ok(counts);
+                }
                 Err(failure) => return Err(steps.escape(system, problem, &held.springs).unwrap_or(failure)),
             };
             counts.equilibrium_iterations += done.equilibrium_iterations;
@@ -155,9 +170,16 @@ impl ContactSolver {
             for m in 0..k {
                 steps.safe[m] = unknowns.motions[m] + steps.residual[m] / held.springs[m];
             }
+            if worst <= BALANCED_STALLED {
+                kept = true;
+                steps.keep(unknowns);
+            }
             let size = steps.safe.iter().fold(scale, |s, a| s.max(a.abs()));
             let small = hold != Hold::None && steps.newton.iter().all(|s| s.abs() <= NEGLIGIBLE_STEP * size);
-            if !stiffened && (worst <= BALANCED_STALLED && (slow || small) || worst <= BALANCED && hold == Hold::None) {
+            if !stiffened
+                && (worst <= BALANCED_STALLED && (slow || small)
+                    || worst <= BALANCED && (refined || hold == Hold::None))
+            {
                 unknowns.motions.copy_from_slice(&steps.safe);
                 system.relief(unknowns.forces, unknowns.relief);
                 system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
@@ -179,6 +201,7 @@ impl ContactSolver {
             if hold != Hold::None && trusted && !stiffened {
                 unknowns.motions.iter_mut().zip(&steps.newton).for_each(|(a, step)| *a += step);
                 retreat = true;
+                refined = true;
             } else {
                 unknowns.motions.copy_from_slice(&steps.safe);
                 trusted = true;
@@ -280,6 +303,15 @@ impl HeldCompliance {
 }
 
 impl Steps {
+    /// Keeps a balance that was found.
+    fn keep(&mut self, unknowns: &Unknowns<'_>) {
+        self.kept_forces.clear();
+        self.kept_forces.extend_from_slice(unknowns.forces);
+        self.kept_closed.clear();
+        self.kept_closed.extend_from_slice(unknowns.closed);
+        self.kept_motions.clone_from(&self.safe);
+    }
+
     /// The Newton step where the closed points hold some directions only: the others go as far as their springs give.
     fn partial_step(&mut self, springs: &[f64]) -> Hold {
         let k = springs.len();
