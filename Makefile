@@ -43,7 +43,7 @@ test-rust:
 test-python: build env
 	$(BIN)/python -m pytest
 
-test: build test-rust test-python check
+test: check build test-rust test-python
 
 demo: build env
 	$(BIN)/python examples/demo.py --out out/demo

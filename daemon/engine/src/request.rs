@@ -24,7 +24,7 @@ pub struct PrepareOptions {
     pub path: PathChoice,
     /// Threads that may be used; 0 and 1 both mean one. The bits of the result do not depend on it.
     pub threads: usize,
-    /// Memory that preparing may take [bytes]; none: as much as it needs.
+    /// Memory that preparing may take, in bytes; none: as much as it needs.
     pub memory_limit: Option<u64>,
     /// Text of a `ports.toml`, if any.
     pub ports_toml: Option<String>,
