@@ -46,14 +46,18 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
     Model {
         mesh,
         materials: vec![Material { name: "M".into(), youngs_modulus: 500.0, poissons_ratio: 0.0, density: None }],
-        interactions: vec![SurfaceInteraction { name: "I".into(), normal, node_area: None }],
+        interactions: vec![SurfaceInteraction::new("I", normal)],
         pairs: vec![ContactPair {
             name: "S_P".into(),
-            secondary: SurfaceId(0),
-            primary: SurfaceId(1),
+            members: PairMembers::Surfaces(SurfacePair {
+                secondary: SurfaceId(0),
+                primary: SurfaceId(1),
+                extension_zone: 0.1,
+                hcrit: None,
+                adjust: None,
+                clearances: Vec::new(),
+            }),
             interaction: InteractionId(0),
-            adjust: None,
-            extension_zone: 0.1,
             place: Place::nowhere(),
         }],
         initial_boundaries: initial,
@@ -70,6 +74,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
             boundaries: vec![boundary(12..16, 2, -travel)],
             loads: vec![],
             loads_removed: LoadsRemoved::default(),
+            contact: StepContact::default(),
             output: OutputRequests {
                 nodes: vec![NodeRequest {
                     target: OutputTarget::Print,

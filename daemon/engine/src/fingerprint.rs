@@ -53,8 +53,7 @@ pub fn fingerprint(model: &Model) -> u64 {
     }
     text(format_args!("{:?}{:?}{:?}", model.materials, model.interactions, model.amplitudes));
     for pair in &model.pairs {
-        text(format_args!("{:?}{:?}{:?}{:?}", pair.name, pair.secondary, pair.primary, pair.interaction));
-        text(format_args!("{}{:?}", pair.extension_zone.to_bits(), pair.adjust));
+        text(format_args!("{:?}{:?}{:?}", pair.name, pair.members, pair.interaction));
     }
     let mut boundary = |b: &crate::model::Boundary| {
         text(format_args!("{:?}{:?}{}{}{:?}", b.region_name, b.nodes, b.direction, b.magnitude.to_bits(), b.amplitude))
@@ -65,6 +64,7 @@ pub fn fingerprint(model: &Model) -> u64 {
     }
     for step in &model.steps {
         text(format_args!("{}{:?}{:?}", step.increments_max, step.procedure, step.loads_removed));
+        text(format_args!("{:?}", step.contact));
         for l in &step.loads {
             text(format_args!("{:?}{:?}{}{:?}", l.region_name, l.kind, l.magnitude.to_bits(), l.amplitude));
         }

@@ -62,6 +62,7 @@ fn patch(kind: ElementKind) -> Model {
             boundaries,
             loads: vec![],
             loads_removed: LoadsRemoved::default(),
+            contact: StepContact::default(),
             output: OutputRequests::default(),
             place: Place::nowhere(),
         }],

@@ -5,7 +5,7 @@
 
 use super::points::secondary_nodes;
 use super::search::{Anchor, PrimarySurface, Query};
-use crate::model::{AdjustRegion, ContactPair, Mesh, NodeId, SurfaceKind};
+use crate::model::{AdjustRegion, Mesh, NodeId, SurfaceKind, SurfacePair};
 
 /// Turns of a node in a corner: at right angles two are enough, at 30 degrees each leaves three quarters of the rest.
 const TURNS_MAX: usize = 100;
@@ -21,7 +21,7 @@ pub fn applies(mesh: &Mesh, region: AdjustRegion, node: NodeId, anchor: &Anchor,
 }
 
 /// Moves the nodes of a pair; returns those that moved, ascending, with the distance [length].
-pub fn adjust(mesh: &mut Mesh, pair: &ContactPair, region: AdjustRegion) -> Vec<(NodeId, f64)> {
+pub fn adjust(mesh: &mut Mesh, pair: &SurfacePair, region: AdjustRegion) -> Vec<(NodeId, f64)> {
     let SurfaceKind::Faces(faces) = &mesh.surfaces[pair.primary.index()].kind else {
         unreachable!("the deck reader admits element-based primary surfaces only")
     };

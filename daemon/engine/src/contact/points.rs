@@ -9,7 +9,7 @@ use super::{adjust, node_areas};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
 use crate::element::{Coordinates, face};
-use crate::model::{ContactPair, Dialect, FACE_NODES_MAX, FaceNodes, Mesh, Model, NodeId, SurfaceKind};
+use crate::model::{Dialect, FACE_NODES_MAX, FaceNodes, InteractionId, Mesh, Model, NodeId, SurfaceKind, SurfacePair};
 
 /// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
 const OVERLAP_MAX: f64 = 0.5;
@@ -35,6 +35,10 @@ pub struct ContactPoint {
     pub clearance: f64,
     /// Size of the primary face: square root of its area [length].
     pub face_size: f64,
+    /// Characteristic length of the interface \[length\]: tolerances and automatic stiffnesses are parts of it.
+    pub length: f64,
+    /// Stiffness of the elements underneath, both sides in series \[pressure/length\]; none where neither side has any.
+    pub underlying: Option<f64>,
 }
 
 impl ContactPoint {
@@ -98,10 +102,10 @@ fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
 type Secondary = (NodeId, f64, Option<[f64; 3]>);
 
 /// Secondary nodes of a pair with their areas as the dialect has them, and the labels of those whose area it leaves open.
-fn secondaries_of(model: &Model, pair: &ContactPair) -> (Vec<Secondary>, Vec<u32>) {
+fn secondaries_of(model: &Model, interaction: InteractionId, pair: &SurfacePair) -> (Vec<Secondary>, Vec<u32>) {
     let mesh = &model.mesh;
     let kind = &mesh.surfaces[pair.secondary.index()].kind;
-    let given = model.interactions[pair.interaction.index()].node_area;
+    let given = model.interactions[interaction.index()].node_area;
     let mut secondaries = secondary_nodes(mesh, kind, given.unwrap_or(1.0));
     let mut unknown = Vec::new();
     if let (SurfaceKind::Nodes(nodes), None, Dialect::Calculix) = (kind, given, model.dialect) {
@@ -124,17 +128,18 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
     let mesh = &model.mesh;
     let (mut points, mut warnings) = (Vec::new(), Vec::new());
     for (pair, index) in model.pairs.iter().zip(0u32..) {
-        let SurfaceKind::Faces(faces) = &mesh.surfaces[pair.primary.index()].kind else {
+        let Some(surfaces) = pair.surfaces() else { continue };
+        let SurfaceKind::Faces(faces) = &mesh.surfaces[surfaces.primary.index()].kind else {
             unreachable!("the deck reader admits element-based primary surfaces only")
         };
         let primary = PrimarySurface::new(mesh, faces);
-        let (secondaries, unknown) = secondaries_of(model, pair);
+        let (secondaries, unknown) = secondaries_of(model, pair.interaction, surfaces);
         let total = secondaries.len();
         let (mut lost, mut deep) = (Vec::new(), Vec::new());
         for (node, area, vector) in secondaries {
             let label = mesh.node_labels[node.index()];
             let outward = vector.map(direction);
-            let anchors = primary.anchors(mesh, Query { node, outward, extension_zone: pair.extension_zone });
+            let anchors = primary.anchors(mesh, Query { node, outward, extension_zone: surfaces.extension_zone });
             if anchors.is_empty() {
                 lost.push(label);
             }
@@ -142,7 +147,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
             for (i, anchor) in anchors.into_iter().enumerate() {
                 let face_size = primary.size(anchor.face);
                 // ADJUST has moved the node; what is left is rounding, or a primary surface that moved behind it.
-                let adjusted = pair.adjust.is_some_and(|a| adjust::applies(mesh, a.region, node, &anchor, i == 0));
+                let adjusted = surfaces.adjust.is_some_and(|a| adjust::applies(mesh, a.region, node, &anchor, i == 0));
                 let clearance = if adjusted { 0.0 } else { anchor.clearance };
                 if clearance < -OVERLAP_MAX * face_size {
                     deep.push(label);
@@ -158,6 +163,8 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                     weights: primary.weights(&anchor),
                     clearance,
                     face_size,
+                    length: face_size,
+                    underlying: None,
                 });
             }
         }

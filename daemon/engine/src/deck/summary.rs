@@ -73,15 +73,16 @@ fn describe_pair(model: &Model, pair: &ContactPair) -> String {
         NormalBehavior::Softened(PressureOverclosure::Exponential(_)) => "exponential",
         NormalBehavior::Softened(PressureOverclosure::CalculixExponential(_)) => "exponential of CalculiX",
     };
-    let adjusted = match pair.adjust {
+    let Some(surfaces) = pair.surfaces() else { return format!("{}: {law}", pair.name) };
+    let adjusted = match surfaces.adjust {
         Some(adjust) => format!("; ADJUST moved {} nodes by up to {:.4e}", adjust.moved, adjust.distance_max),
         None => String::new(),
     };
     format!(
         "{}: secondary {}; primary {}; {law}{adjusted}",
         pair.name,
-        describe_surface(model, pair.secondary),
-        describe_surface(model, pair.primary)
+        describe_surface(model, surfaces.secondary),
+        describe_surface(model, surfaces.primary)
     )
 }
 

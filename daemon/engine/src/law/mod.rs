@@ -8,10 +8,12 @@
 //! ([`LawPoint::pressure`], `stiffness` and `energy` each on its own).
 
 mod calculix_exponential;
+mod damping;
 mod error;
 mod exponential;
 mod linear;
 mod parameters;
+mod penalty;
 mod resolved;
 mod spec;
 mod tabular;
@@ -22,10 +24,12 @@ mod cases;
 pub(crate) mod check;
 
 pub use calculix_exponential::CalculixExponential;
+pub use damping::Damping;
 pub use error::LawError;
 pub use exponential::Exponential;
 pub use linear::Linear;
 pub use parameters::LawParameters;
+pub use penalty::Penalty;
 pub use resolved::{LawProcedure, ResolvedLaw, Separation};
 pub use spec::{LawSpec, LawSpecError, LawSpecErrors};
 pub use tabular::Tabular;

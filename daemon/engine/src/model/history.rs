@@ -1,6 +1,6 @@
 //! Steps: procedures, loads, prescribed displacements and output requests.
 
-use super::{AmplitudeId, ElementFace, ElementId, NodeId, SetId, SurfaceId};
+use super::{AmplitudeId, ElementFace, ElementId, NodeId, SetId, StepContact, SurfaceId};
 use crate::diagnostic::Place;
 
 /// `*STEP` … `*END STEP`.
@@ -18,6 +18,8 @@ pub struct Step {
     pub loads: Vec<Load>,
     /// Whether `*CLOAD, OP=NEW` / `*DLOAD, OP=NEW` / `*DSLOAD, OP=NEW` removes the loads of earlier steps.
     pub loads_removed: LoadsRemoved,
+    /// Contact controls, pairs that act, interferences.
+    pub contact: StepContact,
     /// What to write.
     pub output: OutputRequests,
     /// Line of `*STEP`.

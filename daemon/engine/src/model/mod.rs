@@ -3,15 +3,15 @@
 //! Indices (`NodeId`, `ElementId`, …) count from zero in the order of definition; `label` fields hold the
 //! numbers that the analyst wrote. Units are consistent units.
 
+mod contact;
 mod element;
 mod history;
 mod mesh;
 
+pub use contact::*;
 pub use element::*;
 pub use history::*;
 pub use mesh::*;
-
-use crate::law::NormalBehavior;
 
 /// What a keyword means where codes disagree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -72,57 +72,6 @@ pub struct SolidSection {
     pub element_set: SetId,
     /// Material of the section.
     pub material: MaterialId,
-}
-
-/// `*SURFACE INTERACTION` with its `*SURFACE BEHAVIOR`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SurfaceInteraction {
-    /// Name as the analyst wrote it.
-    pub name: String,
-    /// Normal behaviour: hard or a softened law.
-    pub normal: NormalBehavior,
-    /// Area that each point of a node-based secondary surface stands for \[length²\], where the deck gives one. Otherwise 1, in
-    /// the CalculiX dialect a share of the outer faces at the node (`contact/node_areas.rs`).
-    pub node_area: Option<f64>,
-}
-
-/// `*CONTACT PAIR`, node-to-surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactPair {
-    /// Name used in results and ports: `SECONDARY_PRIMARY`.
-    pub name: String,
-    /// Secondary surface (element-based or node-based): its nodes become contact points.
-    pub secondary: SurfaceId,
-    /// Primary surface (element-based).
-    pub primary: SurfaceId,
-    /// Interaction of the pair.
-    pub interaction: InteractionId,
-    /// Part of a face's size by which a secondary node may hang over the edge of the primary surface; 0.1 unless given.
-    pub extension_zone: f64,
-    /// `ADJUST`: secondary nodes that lie on the primary surface at the start. The coordinates of the mesh are the adjusted ones.
-    pub adjust: Option<Adjust>,
-    /// Where the pair was defined, for diagnostics.
-    pub place: crate::diagnostic::Place,
-}
-
-/// `ADJUST` of a contact pair: a strain-free change of the geometry before the analysis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adjust {
-    /// Nodes that are adjusted.
-    pub region: AdjustRegion,
-    /// How many nodes the reader has moved.
-    pub moved: u32,
-    /// The largest move \[length\].
-    pub distance_max: f64,
-}
-
-/// Nodes that `ADJUST` names.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AdjustRegion {
-    /// Nodes with a clearance up to this \[length\], and all that overlap; not negative.
-    Within(f64),
-    /// Nodes of a set, wherever they are.
-    Set(SetId),
 }
 
 /// `*EQUATION`: Σ coefficient · displacement = 0. The first term is the dependent one: its direction is eliminated.

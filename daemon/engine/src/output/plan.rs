@@ -130,6 +130,7 @@ mod tests {
             boundaries: Vec::new(),
             loads: Vec::new(),
             loads_removed: Default::default(),
+            contact: Default::default(),
             output,
             place: Place::nowhere(),
         }

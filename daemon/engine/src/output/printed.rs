@@ -171,11 +171,14 @@ fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &History
     let columns = ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"];
     for (i, pair) in model.pairs.iter().enumerate() {
         let name = |surface: SurfaceId| &model.mesh.surfaces[surface.index()].name;
-        let heading = format!(
-            "THE FOLLOWING TABLE IS PRINTED FOR ALL SECONDARY NODES IN CONTACT PAIR ({},{})",
-            name(pair.secondary),
-            name(pair.primary)
-        );
+        let heading = match pair.surfaces() {
+            Some(surfaces) => format!(
+                "THE FOLLOWING TABLE IS PRINTED FOR ALL SECONDARY NODES IN CONTACT PAIR ({},{})",
+                name(surfaces.secondary),
+                name(surfaces.primary)
+            ),
+            None => format!("THE FOLLOWING TABLE IS PRINTED FOR ALL ELEMENTS IN ELEMENT SET {}", pair.name),
+        };
         let mut table = Table::new(&heading, Entity::Node, Some("STATUS"), &columns);
         for (point, result) in prepared.contact_points().iter().zip(contact).filter(|(p, _)| p.pair as usize == i) {
             let ContactPointResult { status, clearance, pressure, shear, slip } = *result;

@@ -2,7 +2,7 @@
 
 use crate::contact::adjust::adjust;
 use crate::element::Coordinates;
-use crate::model::{Adjust, AdjustRegion, ElementId, NodeId, SetId};
+use crate::model::{Adjust, AdjustRegion, ElementId, NodeId, PairMembers, SetId, SurfaceId};
 
 use super::super::card::Card;
 use super::super::lex::{looks_numeric, real};
@@ -35,18 +35,20 @@ impl Builder<'_> {
     /// Moves the nodes, pair by pair in the order of the deck, and looks at the elements that they belong to.
     pub(super) fn adjust_nodes(&mut self) {
         for index in 0..self.model.pairs.len() {
-            let Some(region) = self.model.pairs[index].adjust.map(|adjust| adjust.region) else { continue };
-            self.no_secondary_node_in_set(index, region);
-            let moved = adjust(&mut self.model.mesh, &self.model.pairs[index], region);
+            let PairMembers::Surfaces(surfaces) = &mut self.model.pairs[index].members else { continue };
+            let Some(region) = surfaces.adjust.map(|adjust| adjust.region) else { continue };
+            let moved = adjust(&mut self.model.mesh, surfaces, region);
             let distance_max = moved.iter().fold(0.0, |largest: f64, &(_, distance)| largest.max(distance));
-            self.model.pairs[index].adjust = Some(Adjust { region, moved: moved.len() as u32, distance_max });
+            surfaces.adjust = Some(Adjust { region, moved: moved.len() as u32, distance_max });
+            let secondary = surfaces.secondary;
+            self.no_secondary_node_in_set(index, secondary, region);
             self.spoilt_elements(index, &moved);
         }
     }
 
-    fn no_secondary_node_in_set(&mut self, index: usize, region: AdjustRegion) {
+    fn no_secondary_node_in_set(&mut self, index: usize, secondary: SurfaceId, region: AdjustRegion) {
         let AdjustRegion::Set(set) = region else { return };
-        let secondary = self.surface_nodes(self.model.pairs[index].secondary);
+        let secondary = self.surface_nodes(secondary);
         let set = &self.model.mesh.node_sets[set.index()];
         if !set.nodes.iter().any(|node| secondary.binary_search(node).is_ok()) {
             let message = format!("ADJUST={} moves nothing: the set has no node of the secondary surface", set.name);

@@ -3,7 +3,9 @@
 use rustc_hash::FxHashSet;
 
 use crate::law::{LawParameters, NormalBehavior, PressureOverclosure};
-use crate::model::{ContactPair, Dialect, InteractionId, NodeId, SurfaceId, SurfaceInteraction, SurfaceKind};
+use crate::model::{
+    ContactPair, Dialect, InteractionId, NodeId, PairMembers, SurfaceId, SurfaceInteraction, SurfaceKind, SurfacePair,
+};
 
 use super::super::card::Card;
 use super::super::data::Row;
@@ -95,11 +97,9 @@ impl Builder<'_> {
         if card.faulty {
             self.interactions.mark_faulty(position);
         }
-        self.model.interactions.push(SurfaceInteraction {
-            name: name.to_string(),
-            normal: NormalBehavior::Hard,
-            node_area,
-        });
+        self.model
+            .interactions
+            .push(SurfaceInteraction { node_area, ..SurfaceInteraction::new(name, NormalBehavior::Hard) });
         true
     }
 
@@ -322,10 +322,16 @@ impl Builder<'_> {
                     let place = self.map.place(row.at);
                     let interaction = InteractionId(interaction);
                     let name = self.pair_name(secondary, primary);
-                    self.push_pair(
-                        ContactPair { name, secondary, primary, interaction, extension_zone, adjust, place },
-                        row.at,
-                    );
+                    let clearances = Vec::new();
+                    let members = PairMembers::Surfaces(SurfacePair {
+                        secondary,
+                        primary,
+                        extension_zone,
+                        hcrit: None,
+                        adjust,
+                        clearances,
+                    });
+                    self.push_pair(ContactPair { name, members, interaction, place }, (secondary, primary), row.at);
                 }
             }
         }
@@ -442,8 +448,8 @@ impl Builder<'_> {
         format!("{}_{}", name(secondary), name(primary))
     }
 
-    fn push_pair(&mut self, pair: ContactPair, at: At) {
-        if !self.pairs.insert((pair.secondary, pair.primary)) {
+    fn push_pair(&mut self, pair: ContactPair, surfaces: (SurfaceId, SurfaceId), at: At) {
+        if !self.pairs.insert(surfaces) {
             let message = format!("the pair {} is given twice", pair.name);
             self.report.error(at, PAIR, message, "remove one of the lines");
             return;

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::model::{Procedure, StaticControl, Step};
+use crate::model::{Procedure, StaticControl, Step, StepContact};
 
 use super::super::card::Card;
 use super::super::data::Row;
@@ -73,6 +73,7 @@ impl Builder<'_> {
                 boundaries,
                 loads,
                 loads_removed,
+                contact: StepContact::default(),
                 output: requests.all(self.model.dialect),
                 place: self.map.place(opening.at),
             });
