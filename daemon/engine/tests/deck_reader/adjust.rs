@@ -30,13 +30,13 @@ fn nodes_within_the_distance_and_overlapping_nodes_are_moved_onto_the_primary_su
         let model = model(&adjusted(gap, &format!(", ADJUST={distance}")));
         let expected = if moves { 1.0 } else { 1.0 + gap };
         assert!(near(heights(&model), [expected; 4]), "{:?}", heights(&model));
-        let adjust = model.pairs[0].adjust.expect("ADJUST is given");
+        let adjust = model.pairs[0].surfaces().expect("surfaces").adjust.expect("ADJUST is given");
         assert_eq!(adjust.moved, if moves { 4 } else { 0 });
         assert!((adjust.distance_max - if moves { 0.01 } else { 0.0 }).abs() < 1e-12);
         assert_eq!(summary(&model).contains("ADJUST moved 4 nodes by up to 1.0000e-2"), moves, "{}", summary(&model));
     }
     let plain = model(&adjusted(0.01, ""));
-    assert!(plain.pairs[0].adjust.is_none() && near(heights(&plain), [1.01; 4]));
+    assert!(plain.pairs[0].surfaces().expect("surfaces").adjust.is_none() && near(heights(&plain), [1.01; 4]));
 }
 
 #[test]
@@ -45,7 +45,7 @@ fn nodes_of_a_set_are_moved_wherever_they_are() {
         .replace("*SURFACE, NAME=SECOND", "*NSET, NSET=CLOSE\n11, 13, 3\n*SURFACE, NAME=SECOND");
     let model = model(&text);
     assert!(near(heights(&model), [1.0, 1.1, 1.0, 1.1]), "{:?}", heights(&model));
-    assert_eq!(model.pairs[0].adjust.map(|adjust| adjust.moved), Some(2));
+    assert_eq!(model.pairs[0].surfaces().expect("surfaces").adjust.map(|adjust| adjust.moved), Some(2));
     warns(&text.replace("11, 13, 3\n", "3\n"), "*CONTACT PAIR", "ADJUST=CLOSE moves nothing");
     refuses(&text.replace("ADJUST=CLOSE", "ADJUST=CLOSED"), "*CONTACT PAIR", "there is no node set CLOSED");
 }

@@ -332,8 +332,8 @@ fn contact_pairs_are_checked() {
 #[test]
 fn the_extension_zone_is_a_part_of_a_face() {
     let zone = |value: &str| with("*CONTACT PAIR, ", &format!("*CONTACT PAIR, EXTENSION ZONE={value}, "));
-    assert_eq!(model(BASE).pairs[0].extension_zone, 0.1);
-    assert_eq!(model(&zone("0.2")).pairs[0].extension_zone, 0.2);
+    assert_eq!(model(BASE).pairs[0].surfaces().expect("surfaces").extension_zone, 0.1);
+    assert_eq!(model(&zone("0.2")).pairs[0].surfaces().expect("surfaces").extension_zone, 0.2);
     for wrong in ["0.3", "-0.1", "wide", "nan"] {
         refuses(&zone(wrong), "*CONTACT PAIR", "EXTENSION ZONE");
     }
