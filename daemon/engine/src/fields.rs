@@ -2,7 +2,7 @@
 
 use crate::element::{self, Coordinates, connector};
 use crate::model::{Connector, ElementId, NodeId};
-use crate::simulation::{ContactStatus, Field, FieldError, NodalSolution, Simulation};
+use crate::simulation::{Field, FieldError, NodalSolution, Simulation};
 use crate::solve::assembly::coordinates;
 use crate::solve::budget::Budget;
 use crate::solve::columns::Column;
@@ -181,9 +181,7 @@ impl Simulation {
             "S" => Ok(nodal(6, self.nodal_stress(&self.recover()).into_flattened())),
             "CPRESS" => Ok(contact(1, points.iter().map(|p| p.pressure).collect())),
             "COPEN" => Ok(contact(1, points.iter().map(|p| p.clearance).collect())),
-            "CSTATUS" => {
-                Ok(contact(1, points.iter().map(|p| f64::from(u8::from(p.status == ContactStatus::Closed))).collect()))
-            }
+            "CSTATUS" => Ok(contact(1, points.iter().map(|p| f64::from(p.status.number())).collect())),
             "CSLIP" => Ok(contact(2, points.iter().flat_map(|p| p.slip).collect())),
             _ => Err(FieldError { name: name.into(), available: FIELDS.into() }),
         }

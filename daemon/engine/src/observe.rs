@@ -32,7 +32,9 @@ impl Simulation {
                 // A closed hard point is held at zero by its multiplier; what remains is rounding.
                 clearance: if closed && hard { 0.0 } else { -derived.overclosures[i] },
                 pressure: state.forces[i] / point.area,
+                viscous: 0.0,
                 shear: [0.0; 2],
+                viscous_shear: [0.0; 2],
                 slip: [state.slip[i], state.slip[n + i]],
             });
             let pair = &mut derived.pairs[point.pair as usize];
@@ -76,7 +78,7 @@ impl Simulation {
             };
             self.prepared.points.iter().zip(&self.derived.points).filter(here).map(|(_, result)| result)
         };
-        let closed = |pair| points(pair).filter(|p| p.status == ContactStatus::Closed).count();
+        let closed = |pair| points(pair).filter(|p| p.status.is_closed()).count();
         let count = |pick: fn(&WorkCounts) -> u32| self.state.counts.iter().map(|c| f64::from(pick(c))).sum();
         match source {
             Source::PairForce(pair, d) => pairs[pair].force[d],

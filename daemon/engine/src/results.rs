@@ -28,6 +28,47 @@ pub enum ContactStatus {
     /// Closed, frictionless.
     #[serde(rename = "CL")]
     Closed,
+    /// Closed with friction, sticking.
+    #[serde(rename = "ST")]
+    Sticking,
+    /// Closed with friction, slipping.
+    #[serde(rename = "SL")]
+    Slipping,
+    /// Open, with a pressure from viscous damping alone.
+    #[serde(rename = "VD")]
+    Viscous,
+}
+
+impl ContactStatus {
+    /// Whether the surfaces touch, frictionless or not.
+    pub const fn is_closed(self) -> bool {
+        match self {
+            Self::Closed | Self::Sticking | Self::Slipping => true,
+            Self::Open | Self::Viscous => false,
+        }
+    }
+
+    /// Two letters of printed tables: OP, CL, ST, SL, VD.
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::Open => "OP",
+            Self::Closed => "CL",
+            Self::Sticking => "ST",
+            Self::Slipping => "SL",
+            Self::Viscous => "VD",
+        }
+    }
+
+    /// `CSTATUS` as a number, for fields: 0 open, 1 closed, 2 sticking, 3 slipping, 4 open with viscous damping only.
+    pub const fn number(self) -> i8 {
+        match self {
+            Self::Open => 0,
+            Self::Closed => 1,
+            Self::Sticking => 2,
+            Self::Slipping => 3,
+            Self::Viscous => 4,
+        }
+    }
 }
 
 /// Result at a contact point.
@@ -37,10 +78,14 @@ pub struct ContactPointResult {
     pub status: ContactStatus,
     /// COPEN: clearance \[length\], negative when the bodies overlap.
     pub clearance: f64,
-    /// CPRESS: contact pressure \[pressure\], positive in compression.
+    /// CPRESS: contact pressure \[pressure\], positive in compression, with its viscous part.
     pub pressure: f64,
-    /// CSHEAR1, CSHEAR2 \[pressure\].
+    /// CDPRESS: the part of `pressure` that damping gives \[pressure\].
+    pub viscous: f64,
+    /// CSHEAR1, CSHEAR2 \[pressure\], with their viscous parts.
     pub shear: [f64; 2],
+    /// CDSHEAR1, CDSHEAR2: the parts of `shear` that damping gives \[pressure\].
+    pub viscous_shear: [f64; 2],
     /// CSLIP1, CSLIP2: accumulated slip while closed \[length\].
     pub slip: [f64; 2],
 }
@@ -54,6 +99,12 @@ pub struct PairTotals {
     pub force_magnitude: f64,
     /// CAREA: area of the closed points.
     pub area: f64,
+    /// CFS1..3: force on the secondary surface due to friction.
+    pub shear_force: [f64; 3],
+    /// CMN1..3: moment of the pressure on the secondary surface about the origin \[force·length\].
+    pub moment: [f64; 3],
+    /// CMS1..3: moment of the friction on it about the origin \[force·length\].
+    pub shear_moment: [f64; 3],
 }
 
 /// Energies at the end of an increment.
@@ -110,6 +161,8 @@ pub struct WorkCounts {
     pub cutbacks: u32,
     /// Sparse factorisations done for this step.
     pub factorizations: u32,
+    /// Augmentations: times that multipliers of augmented Lagrange were brought up to date.
+    pub augmentations: u32,
 }
 
 /// What a step has done so far.
@@ -130,6 +183,8 @@ pub struct StepReport {
 pub struct StatusChange {
     /// Index into [`PreparedModel::contact_points`](crate::simulation::PreparedModel::contact_points).
     pub point: u32,
+    /// Status at the start of the increment.
+    pub from: ContactStatus,
     /// Status at the end of the increment.
     pub to: ContactStatus,
 }

@@ -74,8 +74,15 @@ fn quantity(quantity: port::Quantity) -> Quantity {
 }
 
 pub fn counts(counts: &WorkCounts) -> Counts {
-    let WorkCounts { increments, equilibrium_iterations, severe_discontinuity_iterations, cutbacks, factorizations } =
-        *counts;
+    // Augmentations are a port; messages do not carry them.
+    let WorkCounts {
+        increments,
+        equilibrium_iterations,
+        severe_discontinuity_iterations,
+        cutbacks,
+        factorizations,
+        augmentations: _,
+    } = *counts;
     Counts { increments, equilibrium_iterations, severe_discontinuity_iterations, cutbacks, factorizations }
 }
 

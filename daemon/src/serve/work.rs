@@ -358,12 +358,14 @@ fn total(simulation: &Simulation) -> Counts {
             severe_discontinuity_iterations,
             cutbacks,
             factorizations,
+            augmentations,
         } = report.counts;
         sum.increments += increments;
         sum.equilibrium_iterations += equilibrium_iterations;
         sum.severe_discontinuity_iterations += severe_discontinuity_iterations;
         sum.cutbacks += cutbacks;
         sum.factorizations += factorizations;
+        sum.augmentations += augmentations;
     }
     convert::counts(&sum)
 }

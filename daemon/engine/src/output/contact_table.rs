@@ -36,7 +36,8 @@ impl ContactTable {
             let label = model.mesh.node_labels[point.node.index()];
             // Writing to a string does not fail.
             let _ = write!(text, ",{label},{}", status_code(result.status));
-            let ContactPointResult { status: _, clearance, pressure, shear, slip } = *result;
+            let ContactPointResult { status: _, clearance, pressure, viscous: _, shear, viscous_shear: _, slip } =
+                *result;
             for value in [point.area, clearance, pressure, shear[0], shear[1], slip[0], slip[1]] {
                 push_number(&mut text, value);
             }
@@ -51,5 +52,8 @@ pub(super) fn status_code(status: ContactStatus) -> &'static str {
     match status {
         ContactStatus::Open => "OP",
         ContactStatus::Closed => "CL",
+        ContactStatus::Sticking => "ST",
+        ContactStatus::Slipping => "SL",
+        ContactStatus::Viscous => "VD",
     }
 }

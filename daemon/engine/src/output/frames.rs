@@ -8,7 +8,7 @@ use super::NodalFields;
 use super::file::OutputError;
 use super::vtu::{Array, Grid};
 use crate::model::{ElementShape, Mesh, Model};
-use crate::simulation::{ContactPointResult, ContactStatus, PreparedModel};
+use crate::simulation::{ContactPointResult, PreparedModel};
 
 /// VTK's cell type of a shape, and VTK's order of its nodes where that is not the order of the manual: the first triangle of
 /// a wedge faces outward.
@@ -200,10 +200,7 @@ impl SurfaceFields {
             if fields.status[i] == NO_CONTACT_POINT || result.clearance < fields.clearance[i] {
                 fields.pressure[i] = result.pressure;
                 fields.clearance[i] = result.clearance;
-                fields.status[i] = match result.status {
-                    ContactStatus::Open => 0,
-                    ContactStatus::Closed => 1,
-                };
+                fields.status[i] = result.status.number();
             }
         }
         fields

@@ -46,7 +46,7 @@ fn row(increment: &IncrementReport, history: &HistoryRow) -> String {
     // Writing to a string does not fail.
     let _ = write!(text, "{},{}", increment.step, increment.increment);
     push_numbers(&mut text, &[increment.time, increment.increment_size]);
-    for PairTotals { force, force_magnitude, area } in &history.pairs {
+    for PairTotals { force, force_magnitude, area, .. } in &history.pairs {
         push_numbers(&mut text, force);
         push_number(&mut text, *force_magnitude);
         push_number(&mut text, *area);
@@ -73,7 +73,10 @@ mod tests {
         assert!(header.ends_with("IMPACT_LOSS,ETOTAL,RF1[NTOP],RF2[NTOP],RF3[NTOP]\n"));
         let energies = Energies { contact: 6.0, total: 8.0, ..Default::default() };
         let history = HistoryRow {
-            pairs: vec![PairTotals { force: [1.0, 2.0, 3.0], force_magnitude: 4.0, area: 5.0 }; 2],
+            pairs: vec![
+                PairTotals { force: [1.0, 2.0, 3.0], force_magnitude: 4.0, area: 5.0, ..Default::default() };
+                2
+            ],
             energies,
             reactions: vec![[7.0, 8.0, 9.0]],
         };

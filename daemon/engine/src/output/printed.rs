@@ -181,7 +181,7 @@ fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &History
         };
         let mut table = Table::new(&heading, Entity::Node, Some("STATUS"), &columns);
         for (point, result) in prepared.contact_points().iter().zip(contact).filter(|(p, _)| p.pair as usize == i) {
-            let ContactPointResult { status, clearance, pressure, shear, slip } = *result;
+            let ContactPointResult { status, clearance, pressure, shear, slip, .. } = *result;
             let values = [pressure, shear[0], shear[1], clearance, slip[0], slip[1]];
             table.row(model.mesh.node_labels[point.node.index()], Some(status_code(status)), &values);
         }

@@ -125,6 +125,8 @@ pub struct StepSummary {
     pub cutbacks: u32,
     /// Sparse factorisations.
     pub factorizations: u32,
+    /// Augmentations of augmented Lagrange.
+    pub augmentations: u32,
     /// Smallest increment of the step in this run \[time\]; absent before the first.
     pub increment_min: Option<f64>,
     /// Largest increment of the step in this run \[time\]; absent before the first.
@@ -140,6 +142,7 @@ impl From<StepReport> for StepSummary {
             severe_discontinuity_iterations,
             cutbacks,
             factorizations,
+            augmentations,
         } = counts;
         Self {
             name,
@@ -150,6 +153,7 @@ impl From<StepReport> for StepSummary {
             severe_discontinuity_iterations,
             cutbacks,
             factorizations,
+            augmentations,
             increment_min: None,
             increment_max: None,
         }

@@ -235,7 +235,7 @@ impl Simulation {
         for i in 0..n {
             if work.closed[i] != state.closed[i] {
                 let to = if work.closed[i] { ContactStatus::Closed } else { ContactStatus::Open };
-                changes.push(StatusChange { point: i as u32, to });
+                changes.push(StatusChange { point: i as u32, from: self.derived.points[i].status, to });
             }
             if work.closed[i] {
                 for at in [i, n + i] {
