@@ -4,3 +4,4 @@ pub mod adjust;
 mod node_areas;
 pub mod points;
 mod search;
+mod underlying;

@@ -5,11 +5,15 @@
 use rustc_hash::FxHashMap;
 
 use super::search::{PrimarySurface, Query};
+use super::underlying::{self, Underlying};
 use super::{adjust, node_areas};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
 use crate::element::{Coordinates, face};
-use crate::model::{Dialect, FACE_NODES_MAX, FaceNodes, InteractionId, Mesh, Model, NodeId, SurfaceKind, SurfacePair};
+use crate::model::{
+    Dialect, ElementFace, FACE_NODES_MAX, FaceNodes, InteractionId, Mesh, Model, NodeId, SurfaceId, SurfaceKind,
+    SurfacePair,
+};
 
 /// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
 const OVERLAP_MAX: f64 = 0.5;
@@ -119,6 +123,54 @@ fn secondaries_of(model: &Model, interaction: InteractionId, pair: &SurfacePair)
     (secondaries, unknown)
 }
 
+/// Stiffness under both sides of a pair.
+struct Stiffness<'a> {
+    underlying: &'a Underlying<'a>,
+    /// Under the nodes of an element-based secondary surface; none for nodes.
+    secondary: Option<FxHashMap<NodeId, f64>>,
+    primary: &'a [ElementFace],
+}
+
+impl<'a> Stiffness<'a> {
+    fn new(underlying: &'a Underlying<'a>, pair: &SurfacePair, primary: &'a [ElementFace]) -> Self {
+        let secondary = match &underlying.model.mesh.surfaces[pair.secondary.index()].kind {
+            SurfaceKind::Faces(faces) => Some(underlying.of_faces(faces)),
+            SurfaceKind::Nodes(_) => None,
+        };
+        Self { underlying, secondary, primary }
+    }
+
+    /// At a point with a normal towards the secondary side, an area, and a position in the primary surface [pressure/length].
+    fn at(&self, node: NodeId, normal: [f64; 3], area: f64, face: u32) -> Option<f64> {
+        let face = self.primary[face as usize];
+        let (solids, primary) = match &self.secondary {
+            Some(nodes) => (nodes.get(&node).copied(), self.underlying.of_face(face)),
+            None => {
+                let share = |force: Option<f64>| force.map(|k| k / area);
+                let solids = self.underlying.of_node(node, normal.map(|x| -x));
+                (share(solids), share(self.underlying.force_of_face(face)))
+            }
+        };
+        let connectors = self.underlying.of_connectors(node, normal).map(|k| k / area);
+        let secondary = match (solids, connectors) {
+            (Some(a), Some(b)) => Some(a + b),
+            (only, None) | (None, only) => only,
+        };
+        underlying::in_series(secondary, primary)
+    }
+}
+
+/// Characteristic length of an interface: the mean size of the faces of the secondary surface, of a node-based one those of the
+/// primary surface [length].
+fn characteristic_length(model: &Model, pair: &SurfacePair) -> f64 {
+    let kind = |surface: SurfaceId| &model.mesh.surfaces[surface.index()].kind;
+    let ((SurfaceKind::Faces(faces), _) | (_, SurfaceKind::Faces(faces))) = (kind(pair.secondary), kind(pair.primary))
+    else {
+        unreachable!("the deck reader admits element-based primary surfaces only")
+    };
+    faces.iter().map(|&face| underlying::face_area(model, face).sqrt()).sum::<f64>() / faces.len() as f64
+}
+
 /// Contact points of all pairs, pair by pair, by node; and warnings about secondary nodes that found no partner or start deep
 /// inside one.
 ///
@@ -127,12 +179,15 @@ fn secondaries_of(model: &Model, interaction: InteractionId, pair: &SurfacePair)
 pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
     let mesh = &model.mesh;
     let (mut points, mut warnings) = (Vec::new(), Vec::new());
+    let underlying = Underlying::new(model);
     for (pair, index) in model.pairs.iter().zip(0u32..) {
         let Some(surfaces) = pair.surfaces() else { continue };
         let SurfaceKind::Faces(faces) = &mesh.surfaces[surfaces.primary.index()].kind else {
             unreachable!("the deck reader admits element-based primary surfaces only")
         };
         let primary = PrimarySurface::new(mesh, faces);
+        let stiffness = Stiffness::new(&underlying, surfaces, faces);
+        let length = characteristic_length(model, surfaces);
         let (secondaries, unknown) = secondaries_of(model, pair.interaction, surfaces);
         let total = secondaries.len();
         let (mut lost, mut deep) = (Vec::new(), Vec::new());
@@ -153,18 +208,19 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                     deep.push(label);
                 }
                 let shown = vector.filter(|_| several).map(|v| dot(v, anchor.normal).abs());
+                let area = shown.unwrap_or(area);
                 points.push(ContactPoint {
                     pair: index,
                     node,
-                    area: shown.unwrap_or(area),
+                    area,
                     normal: anchor.normal,
                     tangents: tangents(anchor.normal),
                     primary: primary.face_nodes(anchor.face),
                     weights: primary.weights(&anchor),
                     clearance,
                     face_size,
-                    length: face_size,
-                    underlying: None,
+                    length,
+                    underlying: stiffness.at(node, anchor.normal, area, anchor.face),
                 });
             }
         }
