@@ -1,28 +1,35 @@
 //! Second pass: cards to a model. References are followed in any direction, so the order of definitions does not matter.
 
 mod adjust;
+mod behavior;
 mod budget;
-mod contact;
+mod damping;
+mod enforcement;
 mod equations;
+mod friction;
+mod interactions;
 mod layout;
 mod loads;
 mod materials;
 mod mesh;
 mod names;
 mod output;
+mod pairs;
 mod prescribed;
 mod regions;
 mod sections;
 mod sets;
 mod steps;
 mod surfaces;
+mod variables;
 
-use crate::model::{Boundary, Dialect, Model, Region, SurfaceId, SurfaceKind};
+use crate::model::{Boundary, Dialect, InteractionId, Model, Region, SurfaceKind};
 
 use super::card::Deck;
 use super::report::{At, Report};
 use super::source::SourceMap;
 use budget::Budget;
+use interactions::InteractionLines;
 use layout::Layout;
 use names::{Labels, Names};
 use prescribed::Part;
@@ -40,6 +47,10 @@ struct Builder<'r> {
     surfaces: Names,
     materials: Names,
     interactions: Names,
+    /// Positions in `Model::interactions` of those names.
+    interaction_names: Vec<InteractionId>,
+    /// Lines of `Model::interactions`.
+    interaction_lines: Vec<InteractionLines>,
     amplitudes: Names,
     /// Labels about which enough has been said.
     refused_nodes: FxHashSet<u32>,
@@ -49,8 +60,8 @@ struct Builder<'r> {
     budget: Budget,
     /// Lines of the equations.
     equation_at: Vec<At>,
-    /// Surfaces of the contact pairs.
-    pairs: FxHashSet<(SurfaceId, SurfaceId)>,
+    /// Names of the contact pairs.
+    pairs: FxHashSet<String>,
     /// Values before the first step, which CalculiX reaches over it.
     early_boundaries: Vec<(At, Boundary)>,
     /// Lines of the contact pairs.
@@ -78,6 +89,8 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         surfaces: Names::new("surface"),
         materials: Names::new("material"),
         interactions: Names::new("surface interaction"),
+        interaction_names: Vec::new(),
+        interaction_lines: Vec::new(),
         amplitudes: Names::new("amplitude"),
         refused_nodes,
         refused_elements,
