@@ -1,11 +1,14 @@
 //! The audit of a solution: what a careful analyst would check before believing it.
 
+use crate::model::Enforcement;
 use crate::simulation::Simulation;
 
 /// Unbalanced force, relative to the forces at work, that rounding explains.
 const BALANCE_TOLERANCE: f64 = 1e-8;
 /// Overclosure of a closed hard point, relative to the largest overclosure that contact prevents.
 const HARD_TOLERANCE: f64 = 1e-8;
+/// Part of a tolerance of the deck by which rounding may exceed it.
+const TOLERATED: f64 = 1e-9;
 /// Overclosure, relative to the face, beyond which a softened law is outside small sliding (HCRIT: half a face).
 const OVERCLOSURE_MAX: f64 = 0.5;
 
@@ -50,16 +53,28 @@ impl Simulation {
     /// No tension, no overclosure of hard points, no overclosure that small sliding does not cover.
     fn audit_points(&self, findings: &mut Vec<String>) {
         let prepared = &self.prepared;
+        let moment = Self::moment(prepared, self.state.step as usize, self.state.step_time);
         let scale = self.work.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
         let force_scale = self.state.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
         let (mut tension, mut overlap, mut deep) = (Vec::new(), Vec::new(), Vec::new());
         for (i, point) in prepared.points.iter().enumerate() {
             let (force, overclosure) = (self.state.forces[i], self.derived.overclosures[i]);
             let label = prepared.model.mesh.node_labels[point.node.index()];
-            if force < -1e-10 * force_scale {
+            let modified = moment.modified(i).filter(|_| !self.state.latched[i]);
+            let tension_max = modified.map_or(0.0, |m| m.tension_max * point.area * (1.0 + TOLERATED));
+            // What pulls on purpose is no finding: dashpots, latched points, what a removed pair still carries.
+            let pulls = self.state.latched[i] || self.state.viscous[i] != 0.0 || !moment.is_active(i);
+            if !pulls && force < -1e-10 * force_scale - tension_max {
                 tension.push(label);
             }
-            if prepared.contact.is_hard(i) && self.state.step_time > 0.0 && overclosure > HARD_TOLERANCE * scale {
+            let allowed = modified
+                .map_or(0.0, |m| m.overclosure_max * (1.0 + TOLERATED))
+                .max(moment.penetration_max(i).unwrap_or(0.0) * (1.0 + TOLERATED));
+            let hard = match moment.enforcement(i) {
+                Some(Enforcement::Lagrange | Enforcement::AugmentedLagrange(_)) => moment.is_active(i),
+                Some(Enforcement::Penalty(_) | Enforcement::NonlinearPenalty(_)) | None => false,
+            };
+            if hard && self.state.step_time > 0.0 && overclosure > HARD_TOLERANCE * scale + allowed {
                 overlap.push(label);
             }
             if overclosure > OVERCLOSURE_MAX * point.face_size {

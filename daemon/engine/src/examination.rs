@@ -1,9 +1,12 @@
 //! What can be found about a model before anything is factored.
 
+use rustc_hash::FxHashSet;
+
 use crate::contact::points::{self, ContactPoint};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::model::{Model, NodeId};
 use crate::procedure::loading::Loading;
+use crate::procedure::rows::{self, RowPlan};
 use crate::solve::constraints::Constraints;
 use crate::solve::floating::{Floating, LOAD_ROUNDING};
 use crate::solve::linear::Dense;
@@ -17,6 +20,10 @@ pub struct Examined {
     pub constraints: Constraints,
     /// Contact points of all pairs.
     pub points: Vec<ContactPoint>,
+    /// The same followed by the tangential rows.
+    pub row_points: Vec<ContactPoint>,
+    /// What the rows are made of.
+    pub rows: RowPlan,
     /// Connected bodies.
     pub bodies: Bodies,
     /// Motions of each body that its supports leave free.
@@ -32,23 +39,56 @@ pub struct Examined {
 /// Examines a validated model; the errors are all there are.
 pub fn examine(model: &Model) -> Result<Examined, Vec<Diagnostic>> {
     let (points, mut warnings) = points::find(model);
-    let constraints = Constraints::new(model, points.iter().map(|p| p.node));
-    let contact_nodes = points.iter().map(|p| p.node).filter(|&n| !constraints.is_fixed(n));
-    let bodies = Bodies::find(model, contact_nodes);
+    let rows = RowPlan::new(model, &points).map_err(|pairs| no_stiffness(model, &pairs))?;
+    let row_points = rows::with_tangential(model, &points);
+    let nodes: Vec<NodeId> = contact_nodes(&points);
+    let constraints = Constraints::new(model, nodes.iter().copied());
+    let bodies = Bodies::find(model, nodes.iter().copied().filter(|&n| !constraints.is_fixed(n)));
     let mut motions: Vec<Motions> = (bodies.nodes.iter().zip(&bodies.elements))
         .map(|(nodes, elements)| Motions::find(model, &constraints, nodes, elements, &bodies.local))
         .collect();
-    let floating = Floating::new(model, &constraints, &points, &bodies, &mut motions);
+    let floating = Floating::new(model, &constraints, &row_points, &bodies, &mut motions);
     warnings.extend(unreachable_loads(model, &bodies));
     let mut loading = Loading::new(model)?;
     constraints.extend(&mut loading.columns);
     let (errors, idle) = unheld(model, &bodies, &motions, &floating, &loading);
     warnings.extend(idle);
     if errors.is_empty() {
-        Ok(Examined { constraints, points, bodies, motions, floating, loading, warnings })
+        Ok(Examined { constraints, points, row_points, rows, bodies, motions, floating, loading, warnings })
     } else {
         Err(errors)
     }
+}
+
+/// Nodes that contact may hold, each once, in the order of the points: secondary nodes, and the first nodes of GAP elements.
+fn contact_nodes(points: &[ContactPoint]) -> Vec<NodeId> {
+    let mut seen = FxHashSet::default();
+    let mut nodes = Vec::new();
+    for point in points {
+        point.row(point.normal, |node, _, _| {
+            if seen.insert(node) {
+                nodes.push(node);
+            }
+        });
+    }
+    nodes
+}
+
+/// Automatic stiffnesses that have no elements to be taken from.
+fn no_stiffness(model: &Model, pairs: &[u32]) -> Vec<Diagnostic> {
+    let finding = |&pair: &u32| {
+        let pair = &model.pairs[pair as usize];
+        Diagnostic::error(
+            pair.place.clone(),
+            "*SURFACE BEHAVIOR",
+            format!(
+                "pair {}: an automatic penalty stiffness or damping is a multiple of the stiffness of the elements underneath, and neither side has any",
+                pair.name
+            ),
+            "give the stiffness on the data line of *SURFACE BEHAVIOR (the coefficient on that of STABILIZE)",
+        )
+    };
+    pairs.iter().map(finding).collect()
 }
 
 /// Motions that neither supports nor contact resist, of bodies with elements: an error where a load of the deck acts along

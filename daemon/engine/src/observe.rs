@@ -1,60 +1,102 @@
 //! Results of the present state: contact points, pair totals, energies, output ports, history.
 
+use crate::element::quad::cross;
+use crate::model::Enforcement;
 use crate::outputs::Source;
+use crate::procedure::rows::Moment;
 use crate::simulation::{ContactPointResult, ContactStatus, Energies, HistoryRow, PairTotals, Simulation, WorkCounts};
 
 impl Simulation {
     /// Computes overclosures and results from the state alone, as after a restore.
     pub(crate) fn recompute(&mut self) {
         let prepared = self.prepared.clone();
+        let coefficients = std::mem::take(&mut self.state.coefficients);
+        self.free_overclosures(&coefficients, self.state.step_time);
+        self.state.coefficients = coefficients;
         let work = &mut self.work;
-        prepared.condensed.free_overclosures(&self.state.coefficients, &mut work.free);
         prepared.contact.relief(&self.state.forces, &mut work.relief);
         prepared.contact.overclosures(&work.free, &work.relief, &self.state.motions, &mut work.overclosures);
         self.refresh();
     }
 
+    /// Status of a contact point.
+    pub(crate) fn status(&self, moment: &Moment<'_>, i: usize) -> ContactStatus {
+        let state = &self.state;
+        match (state.closed[i], state.stuck[i]) {
+            (true, true) => ContactStatus::Sticking,
+            (true, false) if moment.is_rough(i) => ContactStatus::Slipping,
+            (true, false) => ContactStatus::Closed,
+            (false, _) if state.viscous[i] != 0.0 => ContactStatus::Viscous,
+            (false, _) => ContactStatus::Open,
+        }
+    }
+
     /// Brings the derived results up to the state; the work space holds its overclosures and their relief.
     pub(crate) fn refresh(&mut self) {
         let prepared = self.prepared.clone();
-        let n = prepared.points.len();
-        let (state, derived) = (&self.state, &mut self.derived);
-        derived.overclosures.clone_from(&self.work.overclosures);
-        derived.relief.clone_from(&self.work.relief);
-        derived.points.clear();
-        derived.pairs.clear();
-        derived.pairs.resize(prepared.model.pairs.len(), PairTotals::default());
+        let (points, n) = (prepared.points.len(), prepared.rows.count());
+        let moment = Self::moment(&prepared, self.state.step as usize, self.state.step_time);
+        self.derived.points.clear();
         for (i, point) in prepared.points.iter().enumerate() {
-            let closed = state.closed[i];
-            let hard = prepared.contact.is_hard(i);
-            derived.points.push(ContactPointResult {
-                status: if closed { ContactStatus::Closed } else { ContactStatus::Open },
-                // A closed hard point is held at zero by its multiplier; what remains is rounding.
-                clearance: if closed && hard { 0.0 } else { -derived.overclosures[i] },
+            let state = &self.state;
+            // A closed hard point is held at zero by its multiplier; what remains is rounding.
+            let held = state.closed[i] && moment.enforcement(i) == Some(Enforcement::Lagrange);
+            let result = ContactPointResult {
+                status: self.status(&moment, i),
+                clearance: if held { 0.0 } else { -self.work.overclosures[i] },
                 pressure: state.forces[i] / point.area,
-                viscous: 0.0,
+                viscous: state.viscous[i] / point.area,
                 shear: [0.0; 2],
                 viscous_shear: [0.0; 2],
                 slip: [state.slip[i], state.slip[n + i]],
-            });
+            };
+            self.derived.points.push(result);
+        }
+        let (state, derived) = (&self.state, &mut self.derived);
+        derived.overclosures.clone_from(&self.work.overclosures);
+        derived.relief.clone_from(&self.work.relief);
+        derived.pairs.clear();
+        derived.pairs.resize(prepared.model.pairs.len(), PairTotals::default());
+        for (i, point) in prepared.points.iter().enumerate() {
             let pair = &mut derived.pairs[point.pair as usize];
-            for (sum, direction) in pair.force.iter_mut().zip(point.normal) {
-                *sum += state.forces[i] * direction;
+            let force = point.normal.map(|n| state.forces[i] * n);
+            let moment = cross(prepared.model.mesh.nodes[point.node.index()], force);
+            for d in 0..3 {
+                pair.force[d] += force[d];
+                pair.moment[d] += moment[d];
             }
-            if closed {
+            if state.closed[i] {
                 pair.area += point.area;
+            }
+        }
+        for (k, tangential) in (points..).zip(&prepared.rows.tangential) {
+            let (i, d) = (tangential.point as usize, usize::from(tangential.direction));
+            let point = &prepared.points[i];
+            derived.points[i].shear[d] = state.forces[k] / point.area;
+            derived.points[i].viscous_shear[d] = state.viscous[k] / point.area;
+            // The force of the row opposes the slip of the secondary node.
+            let force = point.tangents[d].map(|t| -state.forces[k] * t);
+            let moment = cross(prepared.model.mesh.nodes[point.node.index()], force);
+            let pair = &mut derived.pairs[point.pair as usize];
+            for d in 0..3 {
+                pair.shear_force[d] += force[d];
+                pair.shear_moment[d] += moment[d];
             }
         }
         for pair in &mut derived.pairs {
             pair.force_magnitude = pair.force.iter().map(|f| f * f).sum::<f64>().sqrt();
         }
         let strain = prepared.condensed.strain_energy(&state.coefficients, &state.forces, &derived.relief);
-        let contact = prepared.contact.energy(&derived.overclosures, &state.closed);
+        // Multipliers store nothing: what they do along an overclosure is not given back.
+        self.work.rows.clear();
+        self.work.rows.extend((0..points).map(|i| moment.normal_row(state, i, state.closed[i], 0.0)));
+        let contact = prepared.contact.energy(&self.work.rows, &derived.overclosures, &state.closed);
         derived.energies = Energies {
             strain,
             contact,
+            viscous: state.damping_work,
             external_work: state.external_work,
-            total: strain + contact - state.external_work,
+            total: strain + contact + state.damping_work - state.external_work,
             ..Energies::default()
         };
     }

@@ -15,6 +15,7 @@ use crate::outputs::{Outputs, Source};
 use crate::port::PortList;
 use crate::port_config::PortConfig;
 use crate::procedure::loading::Loading;
+use crate::procedure::rows::RowPlan;
 use crate::simulation::{ContactPointInfo, Phase, PrepareOptions};
 use crate::solve::assembly::{coordinates, elasticities};
 use crate::solve::bodies::{choose_path, prepare_bodies};
@@ -23,7 +24,7 @@ use crate::solve::budget::{Budget, Shortage};
 use crate::solve::columns::Column;
 use crate::solve::condensed::Condensed;
 use crate::solve::constraints::Constraints;
-use crate::solve::contact::{ContactSystem, PointBehavior, Structure, initial_springs};
+use crate::solve::contact::{ContactSystem, Structure, initial_springs};
 use crate::solve::context::Context;
 use crate::solve::floating::Floating;
 use crate::solve::loose::Loose;
@@ -37,6 +38,10 @@ pub struct PreparedModel {
     pub(crate) model: Model,
     pub(crate) ports: PortList,
     pub(crate) points: Vec<ContactPoint>,
+    /// Contact points followed by the tangential rows, as bodies see them.
+    pub(crate) row_points: Vec<ContactPoint>,
+    /// What the rows are made of.
+    pub(crate) rows: RowPlan,
     pub(crate) infos: Vec<ContactPointInfo>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) loading: Loading,
@@ -71,7 +76,7 @@ impl PreparedModel {
         announce: &mut dyn FnMut(Phase),
     ) -> Result<Self, Vec<Diagnostic>> {
         announce(Phase::Search);
-        let Examined { constraints, points, bodies, motions, floating, loading, warnings } =
+        let Examined { constraints, points, row_points, rows, bodies, motions, floating, loading, warnings } =
             examination::examine(&model)?;
         let mut columns = loading.columns.clone();
         let real_columns = columns.len();
@@ -87,7 +92,7 @@ impl PreparedModel {
             elasticities: &elasticities,
             constraints: &constraints,
             local: &bodies.local,
-            points: &points,
+            points: &row_points,
             columns: &columns,
         };
         let (condense, coupled) = choose_path(&context, options.path, &bodies, &motions, &floating);
@@ -142,10 +147,7 @@ impl PreparedModel {
             resisted: floating.resisted.clone(),
             loose: floating.loose.clone(),
             structure,
-            points: points
-                .iter()
-                .map(|p| PointBehavior { area: p.area, behavior: model.pairs[p.pair as usize].interaction.index() })
-                .collect(),
+            count: rows.count(),
             behaviors: model.interactions.iter().map(|i| i.normal.clone()).collect(),
         };
         let all = PortList { inputs: loading.inputs.clone(), outputs: outputs.ports.clone() };
@@ -182,6 +184,8 @@ impl PreparedModel {
             model,
             ports,
             points,
+            row_points,
+            rows,
             infos,
             warnings,
             loading,
@@ -261,7 +265,7 @@ impl PreparedModel {
             constraints: &self.constraints,
             local: &self.numbering.local,
             budget,
-            points: &self.points,
+            points: &self.row_points,
             columns: &self.loading.columns,
         }
     }

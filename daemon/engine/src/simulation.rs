@@ -9,7 +9,8 @@ pub use crate::results::*;
 use crate::fingerprint::fingerprint;
 use crate::model::{Model, Procedure};
 use crate::procedure::loading::Course;
-use crate::solve::contact::ContactSolver;
+use crate::procedure::modified_hard::Verdict;
+use crate::solve::contact::{ContactSolver, Row};
 use crate::state::State;
 
 /// Called at the end of each increment; also asked whether to go on.
@@ -62,6 +63,17 @@ pub(crate) struct Work {
     pub relief: Vec<f64>,
     pub tangential: Vec<f64>,
     pub scratch: Vec<f64>,
+    /// What each row does.
+    pub rows: Vec<Row>,
+    /// Multipliers of augmented Lagrange.
+    pub multipliers: Vec<f64>,
+    /// How often each point has changed its status in the attempt.
+    pub changes: Vec<u8>,
+    pub verdicts: Vec<(u32, Verdict)>,
+    /// What removed pairs still carry.
+    pub given: Vec<f64>,
+    /// Largest overclosure without contact forces: what rounding is judged against.
+    pub scale: f64,
 }
 
 /// Results of the present state: a function of it, never stored.
@@ -83,7 +95,7 @@ pub fn check_checkpoint(model: &Model, bytes: &[u8]) -> Result<(), RestoreError>
 impl Simulation {
     /// At the start of the first step.
     pub fn new(prepared: Arc<PreparedModel>) -> Self {
-        let (n, motions) = (prepared.points.len(), prepared.floating.count());
+        let (points, n, motions) = (prepared.points.len(), prepared.rows.count(), prepared.floating.count());
         let inputs = prepared.loading.input_columns.len();
         let mut input_of_column = vec![None; prepared.real_columns];
         for (input, &column) in prepared.loading.input_columns.iter().enumerate() {
@@ -114,6 +126,13 @@ impl Simulation {
             pending: vec![None; inputs],
             forces: vec![0.0; n],
             closed: vec![false; n],
+            latched: vec![false; points],
+            stuck: vec![false; points],
+            multipliers: vec![0.0; points],
+            origins: vec![0.0; 2 * points],
+            viscous: vec![0.0; n],
+            removed: vec![0.0; n],
+            damping_work: 0.0,
             tangential: vec![0.0; 2 * n],
             slip: vec![0.0; 2 * n],
             motions: vec![0.0; motions],
@@ -137,6 +156,12 @@ impl Simulation {
             relief: vec![0.0; n],
             tangential: vec![0.0; 2 * n],
             scratch: vec![0.0; 2 * n],
+            rows: Vec::with_capacity(n),
+            multipliers: vec![0.0; points],
+            changes: Vec::with_capacity(points),
+            verdicts: Vec::with_capacity(points),
+            given: Vec::new(),
+            scale: 0.0,
         };
         let derived = Derived { overclosures: vec![0.0; n], relief: vec![0.0; n], ..Derived::default() };
         let solver = ContactSolver::new(&prepared.contact);
@@ -290,5 +315,8 @@ impl Simulation {
         self.state.increment_index = 0;
         self.state.easy_increments = 0;
         self.state.counts.push(WorkCounts::default());
+        self.remove_pairs();
+        // Allowed overclosures begin with the step.
+        self.recompute();
     }
 }

@@ -15,7 +15,7 @@ use crate::solve::condensed::Response;
 
 const MAGIC: [u8; 4] = *b"OVCK";
 /// Raised whenever the meaning of the payload changes.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 20;
 
 /// Everything that an increment changes.
@@ -50,6 +50,20 @@ pub struct State {
     pub forces: Vec<f64>,
     /// Status of each point.
     pub closed: Vec<bool>,
+    /// Whether each contact point has closed under NO SEPARATION.
+    pub latched: Vec<bool>,
+    /// Whether each contact point sticks.
+    pub stuck: Vec<bool>,
+    /// Multipliers of augmented Lagrange at each contact point \[pressure\].
+    pub multipliers: Vec<f64>,
+    /// Relative tangential displacement at which each contact point sticks or would, first tangents then second [length].
+    pub origins: Vec<f64>,
+    /// Force of the dashpot of each row at the end of the last increment \[force\].
+    pub viscous: Vec<f64>,
+    /// Force of each row when its pair was removed; it goes to zero over that step \[force\].
+    pub removed: Vec<f64>,
+    /// Work that the dashpots have dissipated \[energy\].
+    pub damping_work: f64,
     /// Relative tangential displacement of each point since the start, first tangents then second [length].
     pub tangential: Vec<f64>,
     /// Accumulated slip while closed, in the same layout [length].
@@ -129,6 +143,12 @@ impl State {
                 s.forces.len(),
                 s.closed.len(),
                 s.tangential.len(),
+                s.latched.len(),
+                s.stuck.len(),
+                s.multipliers.len(),
+                s.origins.len(),
+                s.viscous.len(),
+                s.removed.len(),
                 s.slip.len(),
                 s.motions.len(),
                 s.springs.len(),
@@ -163,6 +183,13 @@ mod tests {
             pending: vec![Some(f64::MIN_POSITIVE)],
             forces: vec![0.1, 0.2, 0.3],
             closed: vec![true, false, true],
+            latched: vec![false, true, false],
+            stuck: vec![false, false, true],
+            multipliers: vec![0.0, 7.5, 0.0],
+            origins: vec![-1e-9; 6],
+            viscous: vec![-0.25; 3],
+            removed: vec![0.0; 3],
+            damping_work: 0.375,
             tangential: vec![0.0; 6],
             slip: vec![1e-300; 6],
             motions: vec![-0.5],

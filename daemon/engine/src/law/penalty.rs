@@ -30,17 +30,24 @@ pub struct Penalty {
     upper: f64,
     /// `c0` \[length\].
     clearance: f64,
+    /// Whether the first slope goes on into tension.
+    extended: bool,
 }
 
 impl Penalty {
     /// One stiffness [pressure/length]; pressure begins at a clearance \[length\].
     pub fn linear(stiffness: f64, clearance: f64) -> Self {
-        Self { initial: stiffness, last: stiffness, lower: 0.0, upper: 0.0, clearance }
+        Self { initial: stiffness, last: stiffness, lower: 0.0, upper: 0.0, clearance, extended: false }
     }
 
     /// Stiffness from `initial` to `last` between the lengths `lower` and `upper`.
     pub fn nonlinear(initial: f64, last: f64, lower: f64, upper: f64, clearance: f64) -> Self {
-        Self { initial, last, lower, upper, clearance }
+        Self { initial, last, lower, upper, clearance, extended: false }
+    }
+
+    /// The curve of surfaces that may not separate: the first slope goes on into tension.
+    pub fn extended(self) -> Self {
+        Self { extended: true, ..self }
     }
 
     /// Stiffness of the straight curve, or the final one.
@@ -52,10 +59,10 @@ impl Penalty {
 impl PressureLaw for Penalty {
     fn evaluate(&self, overclosure: f64) -> LawPoint {
         let x = overclosure + self.clearance;
-        if x <= 0.0 {
-            return LawPoint::default();
-        }
         let Self { initial, last, lower, upper, .. } = *self;
+        if x <= 0.0 {
+            return if self.extended { straight(x, 0.0, initial, 0.0) } else { LawPoint::default() };
+        }
         if x <= lower || initial == last {
             return straight(x, 0.0, initial, 0.0);
         }
@@ -75,18 +82,18 @@ impl PressureLaw for Penalty {
     }
 
     fn kinks(&self) -> Vec<f64> {
-        if self.upper > self.lower || self.initial == self.last {
-            vec![-self.clearance]
-        } else {
-            vec![-self.clearance, self.upper - self.clearance]
+        let mut kinks = if self.extended { Vec::new() } else { vec![-self.clearance] };
+        if self.upper <= self.lower && self.initial != self.last {
+            kinks.push(self.upper - self.clearance);
         }
+        kinks
     }
 
     fn overclosure_at(&self, pressure: f64) -> f64 {
+        let Self { initial, last, lower, upper, clearance, .. } = *self;
         if pressure <= 0.0 {
-            return -self.clearance;
+            return if self.extended { super::saturate(pressure / initial - clearance) } else { -clearance };
         }
-        let Self { initial, last, lower, upper, clearance } = *self;
         let (rise, width) = (last - initial, upper - lower);
         let x = if pressure <= initial * lower || rise == 0.0 {
             pressure / initial

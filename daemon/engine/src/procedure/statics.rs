@@ -1,12 +1,12 @@
 //! Static increments: fixed or automatic, cut back when no equilibrium is found.
 
 use crate::model::{Procedure, StaticControl};
+use crate::procedure::enforcement::IncrementCounts;
+use crate::procedure::failure::Failure;
+use crate::procedure::interference;
 use crate::procedure::loading::value_at;
-use crate::simulation::{
-    AdvanceOutcome, ContactStatus, CutbackReport, IncrementReport, Simulation, StatusChange, Watch,
-};
+use crate::simulation::{AdvanceOutcome, CutbackReport, IncrementReport, Simulation, StatusChange, Watch};
 use crate::solve::condensed::Response;
-use crate::solve::contact::{Problem, SolveCounts, SolveFailure, Unknowns};
 
 /// Automatic increments: growth after two increments in a row without a cutback (Abaqus: 1.5 after two easy ones). How many
 /// iterations they took says nothing: each solve is convex and ends, from any start.
@@ -17,8 +17,6 @@ const CUTBACK: f64 = 0.25;
 const TIME_TOLERANCE: f64 = 1e-12;
 /// Part of a face that a closed point may slide before small sliding no longer describes it.
 const SLIDING_MAX: f64 = 0.5;
-/// Points named in a message.
-const NAMED_POINTS: usize = 6;
 
 /// Interval over which driven inputs go from their last values to their pending ones.
 struct Interval {
@@ -156,45 +154,38 @@ impl Simulation {
     }
 
     /// Tries to find equilibrium at a step time; the state changes only on success.
-    fn attempt(&mut self, time: f64, interval: &Interval) -> Result<(SolveCounts, Vec<StatusChange>), Failure> {
+    fn attempt(&mut self, time: f64, interval: &Interval) -> Result<(IncrementCounts, Vec<StatusChange>), Failure> {
         let prepared = self.prepared.clone();
         let mut coefficients = std::mem::take(&mut self.work.coefficients);
         self.coefficients_at(time, interval, &mut coefficients);
+        self.free_overclosures(&coefficients, time);
         let work = &mut self.work;
-        prepared.condensed.free_overclosures(&coefficients, &mut work.free);
         prepared.condensed.motion_load(&coefficients, &mut work.load, &mut work.load_scale);
         work.forces.clone_from(&self.state.forces);
-        work.closed.clone_from(&self.state.closed);
+        work.closed.resize(prepared.rows.count(), false);
         work.relief.clone_from(&self.derived.relief);
         work.motions.clone_from(&self.state.motions);
         work.springs.clone_from(&self.state.springs);
-        let solved = self.solver.solve(
-            &prepared.contact,
-            Problem { free: &work.free, load: &work.load, load_scale: &work.load_scale },
-            &mut Unknowns {
-                forces: &mut work.forces,
-                relief: &mut work.relief,
-                closed: &mut work.closed,
-                overclosures: &mut work.overclosures,
-                motions: &mut work.motions,
-                springs: &mut work.springs,
-            },
-        );
-        let counts = match solved {
+        let given = self.take_removed(time);
+        let counts = match self.equilibrium(time, time - self.state.step_time) {
             Ok(counts) => counts,
             Err(failure) => {
                 self.work.coefficients = coefficients;
                 return Err(Failure::Solve(failure));
             }
         };
+        if given {
+            self.give_removed(&coefficients, time);
+        }
+        let work = &mut self.work;
         if !prepared.loose.is_empty() {
             prepared.loose.settle(&prepared.condensed, &coefficients, &work.forces, &mut work.motions, &mut work.loose);
             prepared.contact.overclosures(&work.free, &work.relief, &work.motions, &mut work.overclosures);
         }
         let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
         prepared.condensed.tangential(&prepared.contact, response, &mut work.scratch, &mut work.tangential);
-        let n = prepared.points.len();
-        let slid: Vec<u32> = (0..n)
+        let (points, n) = (prepared.points.len(), prepared.rows.count());
+        let slid: Vec<u32> = (0..points)
             .filter(|&i| {
                 work.closed[i]
                     && slid_by(work.tangential[i], work.tangential[n + i]) > SLIDING_MAX * prepared.points[i].face_size
@@ -217,7 +208,7 @@ impl Simulation {
     fn is_finite(&self, coefficients: &[f64]) -> bool {
         let (prepared, work) = (&self.prepared, &self.work);
         let strain = prepared.condensed.strain_energy(coefficients, &work.forces, &work.relief);
-        let contact = prepared.contact.energy(&work.overclosures, &work.closed);
+        let contact = prepared.contact.energy(&work.rows, &work.overclosures, &work.closed);
         let response = Response { coefficients, forces: &work.forces, motions: &work.motions };
         let conjugates = (0..prepared.real_columns).all(|column| {
             let conjugate = prepared.condensed.conjugate(column, response);
@@ -229,19 +220,27 @@ impl Simulation {
     /// Makes the solution in the work space the state.
     fn accept(&mut self, time: f64, coefficients: Vec<f64>) -> Vec<StatusChange> {
         let prepared = self.prepared.clone();
-        let n = prepared.points.len();
-        let mut changes = Vec::new();
+        let (points, n) = (prepared.points.len(), prepared.rows.count());
+        let moment = Self::moment(&prepared, self.state.step as usize, time);
         let (state, work) = (&mut self.state, &mut self.work);
-        for i in 0..n {
-            if work.closed[i] != state.closed[i] {
-                let to = if work.closed[i] { ContactStatus::Closed } else { ContactStatus::Open };
-                changes.push(StatusChange { point: i as u32, from: self.derived.points[i].status, to });
-            }
+        for i in 0..points {
             if work.closed[i] {
                 for at in [i, n + i] {
                     state.slip[at] += work.tangential[at] - state.tangential[at];
                 }
             }
+            state.latched[i] |= work.closed[i] && moment.latches(i) && moment.is_active(i);
+            // A point that does not stick would begin to where it is.
+            state.stuck[i] = moment.sticks(i, work.closed[i], state.closed[i]);
+            if !state.stuck[i] {
+                state.origins[i] = work.tangential[i];
+                state.origins[points + i] = work.tangential[n + i];
+            }
+        }
+        // A dashpot dissipates its force times what the increment moved it: backward Euler.
+        for (i, row) in work.rows.iter().enumerate() {
+            state.viscous[i] = row.viscous_force(work.overclosures[i]);
+            state.damping_work += state.viscous[i] * (work.overclosures[i] - self.derived.overclosures[i]);
         }
         // Work by the trapezoidal rule on each force-displacement pair.
         let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
@@ -259,18 +258,39 @@ impl Simulation {
         std::mem::swap(&mut state.tangential, &mut work.tangential);
         std::mem::swap(&mut state.motions, &mut work.motions);
         std::mem::swap(&mut state.springs, &mut work.springs);
+        std::mem::swap(&mut state.multipliers, &mut work.multipliers);
         work.coefficients = std::mem::replace(&mut state.coefficients, coefficients);
         state.step_time = time;
-        changes
+        let change = |i: usize| {
+            let (from, to) = (self.derived.points[i].status, self.status(&moment, i));
+            (from != to).then_some(StatusChange { point: i as u32, from, to })
+        };
+        (0..points).filter_map(change).collect()
     }
 
-    fn complete(&mut self, control: &StaticControl, clipped: bool, attempt: u32, counts: SolveCounts) {
+    /// Overclosures without contact forces into the work space, less those that are allowed at a step time.
+    pub(crate) fn free_overclosures(&mut self, coefficients: &[f64], time: f64) {
+        let prepared = &self.prepared;
+        prepared.condensed.free_overclosures(coefficients, &mut self.work.free);
+        interference::allow(
+            &prepared.model,
+            &prepared.rows,
+            &prepared.condensed.initial,
+            self.state.step as usize,
+            self.step_start_time(),
+            time,
+            &mut self.work.free,
+        );
+    }
+
+    fn complete(&mut self, control: &StaticControl, clipped: bool, attempt: u32, counts: IncrementCounts) {
         let step = self.state.step as usize;
         let total = &mut self.state.counts[step];
         total.increments += 1;
-        total.equilibrium_iterations += counts.equilibrium_iterations;
-        total.severe_discontinuity_iterations += counts.severe_discontinuity_iterations;
-        total.factorizations += counts.factorizations;
+        total.equilibrium_iterations += counts.solves.equilibrium_iterations;
+        total.severe_discontinuity_iterations += counts.solves.severe_discontinuity_iterations;
+        total.factorizations += counts.solves.factorizations;
+        total.augmentations += counts.augmentations;
         self.state.easy_increments = if attempt == 1 { self.state.easy_increments + 1 } else { 0 };
         if clipped {
             // Off the grid: the next increments are counted from here.
@@ -310,7 +330,7 @@ impl Simulation {
         &mut self,
         size: f64,
         attempt: u32,
-        counts: SolveCounts,
+        counts: IncrementCounts,
         status_changes: Vec<StatusChange>,
     ) -> IncrementReport {
         if !status_changes.is_empty() {
@@ -321,8 +341,8 @@ impl Simulation {
             step: self.state.step + 1,
             increment: self.state.counts[self.state.step as usize].increments,
             attempt,
-            severe_discontinuity_iterations: counts.severe_discontinuity_iterations,
-            equilibrium_iterations: counts.equilibrium_iterations,
+            severe_discontinuity_iterations: counts.solves.severe_discontinuity_iterations,
+            equilibrium_iterations: counts.solves.equilibrium_iterations,
             time: self.time(),
             step_time: self.state.step_time,
             increment_size: size,
@@ -349,68 +369,6 @@ fn next_time(control: &StaticControl, now: f64, proposed: f64, target: f64, tole
 /// Length of a tangential displacement from its components [length].
 fn slid_by(first: f64, second: f64) -> f64 {
     (first * first + second * second).sqrt()
-}
-
-/// Why an attempt failed.
-enum Failure {
-    Solve(SolveFailure),
-    Slid(Vec<u32>),
-    Overflow,
-}
-
-impl Failure {
-    /// A smaller increment cannot help a point that slides or an input beyond all measure.
-    fn is_final(&self) -> bool {
-        matches!(self, Failure::Slid(_) | Failure::Overflow | Failure::Solve(SolveFailure::Unheld { .. }))
-    }
-
-    fn describe(&self, simulation: &Simulation) -> String {
-        let prepared = &simulation.prepared;
-        let name = |&i: &u32| {
-            let point = &prepared.points[i as usize];
-            format!(
-                "{} (pair {})",
-                prepared.model.mesh.node_labels[point.node.index()],
-                prepared.model.pairs[point.pair as usize].name
-            )
-        };
-        let list = |points: &[u32]| {
-            let named: Vec<String> = points.iter().take(NAMED_POINTS).map(name).collect();
-            let more = if points.len() > NAMED_POINTS {
-                format!(" and {} more", points.len() - NAMED_POINTS)
-            } else {
-                String::new()
-            };
-            format!("{}{more}", named.join(", "))
-        };
-        let after = format!("after total time {}", simulation.time());
-        match self {
-            Failure::Overflow => {
-                format!("{after}: the solution leaves the range of numbers; an input is too large for this model")
-            }
-            Failure::Slid(points) => format!(
-                "{after}: a secondary node slides beyond half a face of the primary surface, which small sliding does not cover: node {}",
-                list(points)
-            ),
-            Failure::Solve(SolveFailure::Unheld { motions }) => {
-                let (name, motion) = prepared.describe_motion(motions);
-                format!(
-                    "{after}: {name} is loaded along a motion that neither supports nor contact hold: {motion}; hold it by *BOUNDARY or a spring, or let contact resist it"
-                )
-            }
-            Failure::Solve(SolveFailure::NotConverged { points }) => {
-                format!("{after}: no equilibrium found; points that kept changing: node {}", list(points))
-            }
-            Failure::Solve(SolveFailure::Infeasible { points }) => {
-                let only: Vec<u32> = points.iter().map(|p| p.0).collect();
-                let worst = points.iter().map(|p| p.1).fold(0.0, f64::max);
-                format!(
-                    "{after}: prescribed motions push hard surfaces into each other by up to {worst:e} and nothing can give way: node {}",
-                    list(&only)
-                )
-            }
-        }
-    }
 }
 
 #[cfg(test)]

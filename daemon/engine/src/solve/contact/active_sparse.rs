@@ -35,7 +35,7 @@ impl SparseWork {
         if !self.prepare(structure, springs, view, active, compliances) {
             return false;
         }
-        let n = view.points.len();
+        let n = view.rows.len();
         let (mut all, mut relief) =
             (std::mem::take(&mut self.product_forces), std::mem::take(&mut self.product_relief));
         all.resize(n, 0.0);
@@ -69,7 +69,7 @@ impl SparseWork {
         active: &[u32],
         compliances: &[f64],
     ) -> bool {
-        let area = |i: u32| view.points[i as usize].area;
+        let area = |i: u32| view.rows[i as usize].area;
         let shared = sparse::stand_in(active.iter().map(|&i| (structure.own[i as usize], area(i))));
         let stiff = |i: u32, c: f64| c.max(shared / area(i));
         let wanted: Vec<(u32, f64)> = active.iter().zip(compliances).map(|(&i, &c)| (i, stiff(i, c))).collect();

@@ -9,9 +9,9 @@
 //! Source: proximal point method on the multipliers of the balance (Rockafellar 1976); for problems of this kind it converges
 //! from any start, linearly at a rate that softer springs make as fast as one likes.
 
+use super::row::{Row, Wall};
 use super::view::{Compliance, Springs, View};
 use super::{ContactSolver, ContactSystem, Problem, SPRING_RATIO, SolveCounts, SolveFailure, Structure, Unknowns};
-use crate::law::{NormalBehavior, PressureLaw};
 use crate::solve::linear::{self, Dense, DenseScratch};
 
 /// Steps before an attempt is given up; five are usual.
@@ -93,7 +93,7 @@ impl ContactSolver {
         unknowns: &mut Unknowns<'_>,
     ) -> Result<SolveCounts, SolveFailure> {
         if system.gap_motions.columns == 0 {
-            let view = system.held(None);
+            let view = system.held(problem.rows, None);
             let scale = problem.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
             return self.solve_held(&view, problem.free, scale, unknowns);
         }
@@ -111,7 +111,7 @@ impl ContactSolver {
         work: &mut BalanceWork,
     ) -> Result<SolveCounts, SolveFailure> {
         let BalanceWork { held, steps } = work;
-        let (n, k) = (system.points.len(), system.gap_motions.columns);
+        let (n, k) = (system.count, system.gap_motions.columns);
         for z in 0..system.loose.columns {
             let combination = system.loose.column(z);
             let (mut load, mut scale) = (0.0, 0.0);
@@ -133,13 +133,16 @@ impl ContactSolver {
                 self.forget_factor();
             }
             let scale = steps.free_overclosures(system, problem, unknowns);
-            let view = system.held(Some(match &system.structure {
-                Structure::Dense(_) => Compliance::Dense(&held.compliance),
-                Structure::Sparse(sparse) => Compliance::Sparse(
-                    sparse,
-                    Some(Springs { gaps: &system.gap_motions, springs: &held.springs, resisted: &system.resisted }),
-                ),
-            }));
+            let view = system.held(
+                problem.rows,
+                Some(match &system.structure {
+                    Structure::Dense(_) => Compliance::Dense(&held.compliance),
+                    Structure::Sparse(sparse) => Compliance::Sparse(
+                        sparse,
+                        Some(Springs { gaps: &system.gap_motions, springs: &held.springs, resisted: &system.resisted }),
+                    ),
+                }),
+            );
             view.relief(unknowns.forces, unknowns.relief);
             let done = match self.solve_held(&view, &steps.free, scale, unknowns) {
                 Ok(done) => done,
@@ -183,7 +186,7 @@ impl ContactSolver {
                 unknowns.motions.copy_from_slice(&steps.safe);
                 system.relief(unknowns.forces, unknowns.relief);
                 system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
-                if polished || self.laws_hold(system, problem.free, unknowns) {
+                if polished || self.laws_hold(system, problem, unknowns) {
                     return Ok(counts);
                 }
                 // Laws much stiffer than the bodies feel the rounding of the soft springs.
@@ -351,10 +354,13 @@ impl Steps {
     fn escape(&self, system: &ContactSystem, problem: Problem<'_>, springs: &[f64]) -> Option<SolveFailure> {
         let way: Vec<f64> = self.residual.iter().zip(springs).map(|(r, spring)| r / spring).collect();
         let pushed: f64 = way.iter().zip(problem.load).map(|(z, load)| z * load).sum();
-        let mut overclosures = vec![0.0; system.points.len()];
+        let mut overclosures = vec![0.0; system.count];
         system.gap_motions.multiply_add(&way, &mut overclosures);
         let largest = overclosures.iter().fold(0.0f64, |m, h| m.max(h.abs()));
-        let opens = overclosures.iter().all(|h| *h <= 1e-9 * largest);
+        // A two-sided wall resists both ways.
+        let gives =
+            |(h, row): (&f64, &Row)| *h <= 1e-9 * largest && (row.wall != Wall::TwoSided || *h >= -1e-9 * largest);
+        let opens = overclosures.iter().zip(problem.rows).all(gives);
         (opens && pushed > 0.0).then_some(SolveFailure::Unheld { motions: way })
     }
 
@@ -381,11 +387,11 @@ impl Steps {
         }
         // A motion that carries next to nothing is judged by what goes on elsewhere.
         let forces = unknowns.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-        let view = system.held(None);
-        let unrelieved = (problem.free.iter().enumerate())
-            .map(|(i, h)| match &system.behaviors[system.points[i].behavior] {
-                NormalBehavior::Hard => h.max(0.0) / view.own(i),
-                NormalBehavior::Softened(law) => system.points[i].area * law.evaluate(*h).pressure,
+        let unrelieved = (problem.free.iter().zip(problem.rows).enumerate())
+            .map(|(i, (h, row))| match row.wall {
+                Wall::None => row.evaluate(&system.behaviors, *h).force.abs(),
+                Wall::OneSided => (h - row.position).max(0.0) / system.own(i),
+                Wall::TwoSided => (h - row.position).abs() / system.own(i),
             })
             .filter(|force| force.is_finite())
             .fold(0.0f64, f64::max);

@@ -15,9 +15,9 @@
 
 use super::active_sparse::SparseWork;
 use super::balance::BalanceWork;
+use super::row::Wall;
 use super::view::{Compliance, View};
-use super::{SolveCounts, SolveFailure, Unknowns};
-use crate::law::{NormalBehavior, PressureLaw};
+use super::{Problem, SolveCounts, SolveFailure, Unknowns};
 use crate::solve::contact::ContactSystem;
 use crate::solve::linear::{self, DenseScratch};
 
@@ -53,6 +53,14 @@ pub struct ContactSolver {
     compliance: Vec<f64>,
     /// Per point: overclosure at which the linearised law has no pressure (0 for hard points).
     onset: Vec<f64>,
+    /// Per row: force of its curve at its wall.
+    floor: Vec<f64>,
+    /// Per row: the curve as linearised.
+    curve_compliance: Vec<f64>,
+    curve_onset: Vec<f64>,
+    on_curve: Vec<bool>,
+    /// Per row: whether it is on its wall.
+    on_wall: Vec<bool>,
     is_active: Vec<bool>,
     was_closed: Vec<bool>,
     violating: Vec<u32>,
@@ -70,9 +78,17 @@ pub struct ContactSolver {
 impl ContactSolver {
     /// Work space for a view.
     pub fn new(system: &ContactSystem) -> Self {
-        let n = system.points.len();
+        let n = system.count;
         let mut solver = Self::default();
-        for v in [&mut solver.trial, &mut solver.relief_trial, &mut solver.compliance, &mut solver.onset] {
+        for v in [
+            &mut solver.trial,
+            &mut solver.relief_trial,
+            &mut solver.compliance,
+            &mut solver.onset,
+            &mut solver.floor,
+            &mut solver.curve_compliance,
+            &mut solver.curve_onset,
+        ] {
             v.resize(n, 0.0);
         }
         for v in [&mut solver.active, &mut solver.violating, &mut solver.factor_points, &mut solver.factor_rows] {
@@ -80,7 +96,9 @@ impl ContactSolver {
         }
         solver.right.reserve(n);
         solver.factor_compliance.reserve(n);
-        solver.is_active.resize(n, false);
+        for v in [&mut solver.is_active, &mut solver.on_wall, &mut solver.on_curve] {
+            v.resize(n, false);
+        }
         solver.was_closed.resize(n, false);
         solver
     }
@@ -109,15 +127,20 @@ impl ContactSolver {
         unknowns: &mut Unknowns<'_>,
     ) -> Result<SolveCounts, SolveFailure> {
         let Unknowns { forces, relief, closed, overclosures, .. } = unknowns;
-        let n = view.points.len();
+        let n = view.rows.len();
         let mut counts = SolveCounts::default();
-        let has_hard = (0..n).any(|i| view.is_hard(i));
+        let has_walls = (0..n).any(|i| view.has_wall(i));
         let factorizations = self.sparse.factorizations;
+        self.on_curve.fill(false);
         for i in 0..n {
-            self.is_active[i] = view.is_hard(i) && closed[i];
+            self.on_wall[i] = match view.rows[i].wall {
+                Wall::None => false,
+                Wall::OneSided => closed[i],
+                Wall::TwoSided => true,
+            };
         }
         // A start that violates a hard constraint has no potential to compare with: its first step is taken whole.
-        let mut comparable = !has_hard;
+        let mut comparable = !has_walls;
         for i in 0..n {
             overclosures[i] = free[i] - relief[i];
         }
@@ -140,7 +163,7 @@ impl ContactSolver {
                 overclosures[i] = free[i] - relief[i];
             }
             for i in 0..n {
-                closed[i] = if view.is_hard(i) { self.is_active[i] } else { forces[i] > 0.0 };
+                closed[i] = if view.has_wall(i) { self.on_wall[i] } else { forces[i] > 0.0 };
             }
             if **closed != *self.was_closed {
                 counts.severe_discontinuity_iterations += 1;
@@ -151,7 +174,18 @@ impl ContactSolver {
                 counts.factorizations = self.sparse.factorizations - factorizations;
                 // At the kink of a law rounding would choose the status: a force that is rounding closes nothing.
                 let negligible = STATUS_ROUNDING * forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-                (0..n).for_each(|i| closed[i] = closed[i] && forces[i] > negligible);
+                for (i, row) in view.rows.iter().enumerate() {
+                    closed[i] = match (row.wall, row.dashpot) {
+                        (Wall::TwoSided, _) => true,
+                        (Wall::OneSided, None) => closed[i] && forces[i] > negligible,
+                        (Wall::OneSided, Some(_)) => closed[i],
+                        (Wall::None, None) => forces[i] > negligible,
+                        // What a dashpot carries says nothing about contact.
+                        (Wall::None, Some(_)) => {
+                            row.area * row.law(view.behaviors, overclosures[i]).pressure > negligible
+                        }
+                    };
+                }
                 // The last step was taken whole: `relief` is `W F` as `relief` of the view computes it.
                 return Ok(counts);
             }
@@ -163,34 +197,50 @@ impl ContactSolver {
         Err(SolveFailure::NotConverged { points: unsettled.map(|i| i as u32).collect() })
     }
 
-    /// Linearises the softened laws at the present overclosures: `F = (h − onset) / compliance` where the slope is
-    /// positive, no force elsewhere.
+    /// Linearises the curves at the present overclosures: `F = (h − onset) / compliance` where the slope is positive, no force
+    /// elsewhere. Rows with a wall have their curve below it, and its force at the wall is the least that they carry there.
     fn linearise(&mut self, view: &View<'_>, overclosures: &[f64]) {
-        for (i, point) in view.points.iter().enumerate() {
-            if let NormalBehavior::Softened(law) = &view.behaviors[point.behavior] {
-                let at = law.evaluate(overclosures[i]);
-                // A point so soft against the bodies that its force cannot matter is left out: its compliance
-                // would only bring overflow into the factor.
-                let own = view.own(i);
-                let softness = at.stiffness * point.area * own;
-                self.is_active[i] = softness > NEGLIGIBLE_STIFFNESS || (own == 0.0 && at.stiffness > 0.0);
-                if self.is_active[i] {
-                    self.compliance[i] = 1.0 / (point.area * at.stiffness);
-                    self.onset[i] = overclosures[i] - at.pressure / at.stiffness;
-                }
+        for (i, row) in view.rows.iter().enumerate().filter(|(_, row)| row.has_curve()) {
+            let walled = row.wall != Wall::None;
+            let h = if walled { overclosures[i].min(row.position) } else { overclosures[i] };
+            let at = row.evaluate(view.behaviors, h);
+            // A point so soft against the bodies that its force cannot matter is left out: its compliance
+            // would only bring overflow into the factor.
+            let own = view.own(i);
+            let softness = at.stiffness * own;
+            self.on_curve[i] = softness > NEGLIGIBLE_STIFFNESS || (own == 0.0 && at.stiffness > 0.0);
+            if self.on_curve[i] {
+                self.curve_compliance[i] = 1.0 / at.stiffness;
+                self.curve_onset[i] = h - at.force / at.stiffness;
+            }
+            if walled {
+                self.floor[i] = row.evaluate(view.behaviors, row.position).force;
+            }
+        }
+    }
+
+    /// Sets what the active rows are worth in the linear model: walls where they stand, curves as linearised.
+    fn activate(&mut self, view: &View<'_>) {
+        self.active.clear();
+        for (i, row) in view.rows.iter().enumerate() {
+            self.is_active[i] = self.on_wall[i] || self.on_curve[i];
+            if self.is_active[i] {
+                self.active.push(i as u32);
+                let on_wall = self.on_wall[i];
+                self.compliance[i] = if on_wall { 0.0 } else { self.curve_compliance[i] };
+                self.onset[i] = if on_wall { row.position } else { self.curve_onset[i] };
             }
         }
     }
 
     /// Minimises the quadratic model into `trial` and `relief_trial`; returns the exchanges of hard points.
     fn minimise_model(&mut self, view: &View<'_>, free: &[f64], free_scale: f64) -> Result<u32, SolveFailure> {
-        let n = view.points.len();
+        let n = view.rows.len();
         let (mut best, mut patience, mut exchanges) = (usize::MAX, FULL_EXCHANGES_WITHOUT_GAIN, 0u32);
         // Single exchanges visit a set at most once; the bound only guards against rounding.
         let exchanges_max = 50 + 20 * n as u32;
         loop {
-            self.active.clear();
-            self.active.extend((0..n as u32).filter(|&i| self.is_active[i as usize]));
+            self.activate(view);
             self.solve_active(view, free);
             view.relief(&self.trial, &mut self.relief_trial);
             let force_scale = self.trial.iter().fold(0.0f64, |m, f| m.max(f.abs()));
@@ -198,11 +248,11 @@ impl ContactSolver {
             let rounding = if iterative { ITERATIVE_ROUNDING } else { 1.0 };
             let slack = rounding * OVERCLOSURE_TOLERANCE * free_scale;
             self.violating.clear();
-            for i in (0..n).filter(|&i| view.is_hard(i)) {
-                let violates = if self.is_active[i] {
-                    self.trial[i] < -rounding * FORCE_TOLERANCE * force_scale
+            for (i, row) in view.rows.iter().enumerate().filter(|(_, row)| row.wall == Wall::OneSided) {
+                let violates = if self.on_wall[i] {
+                    self.trial[i] < self.floor[i] - rounding * FORCE_TOLERANCE * force_scale
                 } else {
-                    free[i] - self.relief_trial[i] > slack
+                    free[i] - self.relief_trial[i] > row.position + slack
                 };
                 if violates {
                     self.violating.push(i as u32);
@@ -227,7 +277,7 @@ impl ContactSolver {
             };
             let begin = if full { 0 } else { self.violating.len() - 1 };
             for &i in &self.violating[begin..] {
-                self.is_active[i as usize] = !self.is_active[i as usize];
+                self.on_wall[i as usize] = !self.on_wall[i as usize];
             }
         }
     }
@@ -235,20 +285,16 @@ impl ContactSolver {
     /// Solves `(W + C) F = h_free − onset` on the active points into `trial`; reuses the factor when neither the
     /// points nor their compliances have changed.
     fn solve_active(&mut self, view: &View<'_>, free: &[f64]) {
-        let n = view.points.len();
-        let compliance = |s: &Self, i: u32| if view.is_hard(i as usize) { 0.0 } else { s.compliance[i as usize] };
+        let n = view.rows.len();
         if let Compliance::Sparse(..) = view.compliance {
             return self.solve_active_sparse(view, free);
         }
         let unchanged = self.factor_points == self.active
-            && self.active.iter().zip(&self.factor_compliance).all(|(&i, &c)| c == compliance(self, i));
+            && self.active.iter().zip(&self.factor_compliance).all(|(&i, &c)| c == self.compliance[i as usize]);
         if !unchanged {
             self.factor_points.clone_from(&self.active);
             self.factor_compliance.clear();
-            for k in 0..self.active.len() {
-                let c = compliance(self, self.active[k]);
-                self.factor_compliance.push(c);
-            }
+            self.factor_compliance.extend(self.active.iter().map(|&i| self.compliance[i as usize]));
             self.factor_rows.clone_from(&self.active);
             self.factors += 1;
             self.fill_factor(view);
@@ -263,10 +309,7 @@ impl ContactSolver {
             }
         }
         self.right.clear();
-        for &i in &self.factor_rows {
-            let onset = if view.is_hard(i as usize) { 0.0 } else { self.onset[i as usize] };
-            self.right.push(free[i as usize] - onset);
-        }
+        self.right.extend(self.factor_rows.iter().map(|&i| free[i as usize] - self.onset[i as usize]));
         linear::cholesky_solve(&self.factor, self.factor_rows.len(), &mut self.right);
         self.trial[..n].fill(0.0);
         for (&i, &force) in self.factor_rows.iter().zip(&self.right) {
@@ -280,9 +323,8 @@ impl ContactSolver {
         self.factor_compliance.clear();
         let mut forces: Vec<f64> = Vec::with_capacity(self.active.len());
         for &i in &self.active {
-            let hard = view.is_hard(i as usize);
-            self.right.push(free[i as usize] - if hard { 0.0 } else { self.onset[i as usize] });
-            self.factor_compliance.push(if hard { 0.0 } else { self.compliance[i as usize] });
+            self.right.push(free[i as usize] - self.onset[i as usize]);
+            self.factor_compliance.push(self.compliance[i as usize]);
             forces.push(0.0);
         }
         let solved = self.sparse.solve(view, &self.active, &self.factor_compliance, &self.right, &mut forces);
@@ -328,19 +370,17 @@ impl ContactSolver {
             let column = w.column(j as usize);
             let begin = self.factor.len();
             self.factor.extend(self.factor_rows.iter().map(|&i| column[i as usize]));
-            if !view.is_hard(j as usize) {
-                let diagonal = begin / size.max(1);
-                self.factor[begin + diagonal] += self.compliance[j as usize];
-            }
+            let diagonal = begin / size.max(1);
+            self.factor[begin + diagonal] += self.compliance[j as usize];
         }
     }
 
     /// Compliance at a point that the last model took part with: that of the bodies and of the law; none at open points.
     pub(super) fn present_compliance(&self, system: &ContactSystem, i: usize) -> Option<f64> {
-        let own = system.held(None).own(i);
-        match system.is_hard(i) {
-            true => self.is_active[i].then_some(own),
-            false => (self.is_active[i] && self.trial[i] > 0.0).then(|| own + self.compliance[i]),
+        let own = system.own(i);
+        match self.on_wall[i] {
+            true => Some(own),
+            false => (self.is_active[i] && self.trial[i] != 0.0).then(|| own + self.compliance[i]),
         }
     }
 
@@ -378,13 +418,12 @@ impl ContactSolver {
         }
         let limit = (CONFLICT_TOLERANCE * free_scale).max(CONFLICT_ROUNDING * view.extent);
         let conflict = |&i: &u32| -> Option<(u32, f64)> {
-            let overclosure = free[i as usize] - self.relief_trial[i as usize];
-            {
-                // Conjugate gradients do not tell which points depend on others: all are looked at.
-                let dependent = view.is_hard(i as usize) && (!dense || self.factor_rows.binary_search(&i).is_err());
-                dependent && overclosure > limit
-            }
-            .then_some((i, overclosure))
+            let row = &view.rows[i as usize];
+            let overclosure = free[i as usize] - self.relief_trial[i as usize] - row.position;
+            // Conjugate gradients do not tell which points depend on others: all are looked at.
+            let dependent = self.on_wall[i as usize] && (!dense || self.factor_rows.binary_search(&i).is_err());
+            let missed = if row.wall == Wall::TwoSided { overclosure.abs() } else { overclosure };
+            (dependent && missed > limit).then_some((i, overclosure))
         };
         let points: Vec<_> = self.active.iter().filter_map(conflict).collect();
         if points.is_empty() { Ok(()) } else { Err(SolveFailure::Infeasible { points }) }
@@ -392,7 +431,7 @@ impl ContactSolver {
 
     /// Part of the step to take: 1 unless Π has risen again before its end, else a point near its minimum.
     fn line_search(&self, view: &View<'_>, forces: &[f64], relief: &[f64], overclosures: &[f64]) -> f64 {
-        let n = view.points.len();
+        let n = view.rows.len();
         // Π'(t) = (Λ + t dΛ)ᵀ W dΛ − Σ A p(h − t W dΛ) (W dΛ).
         let slope = |t: f64| -> f64 {
             let mut sum = 0.0;
@@ -400,9 +439,9 @@ impl ContactSolver {
                 let rate = self.relief_trial[i] - relief[i];
                 let force = forces[i] + t * (self.trial[i] - forces[i]);
                 sum += force * rate;
-                let point = &view.points[i];
-                if let NormalBehavior::Softened(law) = &view.behaviors[point.behavior] {
-                    sum -= point.area * law.evaluate(overclosures[i] - t * rate).pressure * rate;
+                let row = &view.rows[i];
+                if row.has_curve() && !self.on_wall[i] {
+                    sum -= row.evaluate(view.behaviors, overclosures[i] - t * rate).force * rate;
                 }
             }
             sum
@@ -435,19 +474,19 @@ impl ContactSolver {
 
     fn is_balanced(&self, view: &View<'_>, free: &[f64], forces: &[f64], overclosures: &[f64]) -> bool {
         let scale = self.force_scale();
-        (0..view.points.len()).all(|i| self.point_is_balanced(view, i, free, forces, overclosures[i], scale))
+        (0..view.rows.len()).all(|i| self.point_is_balanced(view, i, free, forces, overclosures[i], scale))
     }
 
     /// Whether the laws are satisfied without springs on the motions.
-    pub(super) fn laws_hold(&self, system: &ContactSystem, free: &[f64], unknowns: &Unknowns<'_>) -> bool {
-        self.is_balanced(&system.held(None), free, unknowns.forces, unknowns.overclosures)
+    pub(super) fn laws_hold(&self, system: &ContactSystem, problem: Problem<'_>, unknowns: &Unknowns<'_>) -> bool {
+        self.is_balanced(&system.held(problem.rows, None), problem.free, unknowns.forces, unknowns.overclosures)
     }
 
     /// Whether the end of the present step satisfies the laws.
     fn trial_is_balanced(&self, view: &View<'_>, free: &[f64]) -> bool {
         let scale = self.force_scale();
         let overclosure = |i: usize| free[i] - self.relief_trial[i];
-        (0..view.points.len()).all(|i| self.point_is_balanced(view, i, free, &self.trial, overclosure(i), scale))
+        (0..view.rows.len()).all(|i| self.point_is_balanced(view, i, free, &self.trial, overclosure(i), scale))
     }
 
     /// Largest force of the model solution.
@@ -465,19 +504,21 @@ impl ContactSolver {
         overclosure: f64,
         scale: f64,
     ) -> bool {
-        let point = &view.points[i];
-        let NormalBehavior::Softened(law) = &view.behaviors[point.behavior] else { return true };
-        let at = law.evaluate(overclosure);
+        let row = &view.rows[i];
+        if !row.has_curve() || self.on_wall[i] {
+            return true;
+        }
+        let at = row.evaluate(view.behaviors, overclosure);
         let own = view.own(i);
-        if !self.is_active[i] && at.stiffness * point.area * own <= NEGLIGIBLE_STIFFNESS && own > 0.0 {
+        if !self.is_active[i] && at.stiffness * own <= NEGLIGIBLE_STIFFNESS && own > 0.0 {
             // Left out of the model because its force cannot matter.
             return true;
         }
-        let residual = (forces[i] - point.area * at.pressure).abs();
+        let residual = (forces[i] - at.force).abs();
         if residual <= FORCE_TOLERANCE * scale {
             return true;
         }
         // What the rounding of the overclosure does to the force cannot be asked for.
-        residual <= view.rounding(i, free[i], overclosure, forces) * at.stiffness * point.area
+        residual <= view.rounding(i, free[i], overclosure, forces) * at.stiffness
     }
 }

@@ -1,7 +1,7 @@
 //! The contact solve in gap space: which points carry force, how much, and where bodies settle that only contact holds.
 //!
 //! ```text
-//! h = h_free − W F + D α,      F_i = A_i p(h_i)  (softened),      h_i ≤ 0, F_i ≥ 0, F_i h_i = 0  (hard)
+//! h = h_free − W F + D α,      F_i = A_i p(h_i)  (curves),      h_i ≤ 0, F_i ≥ 0, F_i h_i = 0  (walls; see `row.rs`)
 //! Dᵀ F = Rᵀ f
 //! ```
 //!
@@ -10,13 +10,15 @@
 mod active_sparse;
 mod balance;
 mod held;
+mod row;
 mod system;
 #[cfg(test)]
 mod tests;
 mod view;
 
 pub use held::ContactSolver;
-pub use system::{ContactSystem, PointBehavior, Structure, initial_springs};
+pub use row::{Curve, Dashpot, Row, Viscosity, Wall};
+pub use system::{ContactSystem, Structure, initial_springs};
 
 /// Springs on motions, relative to the stiffness with which closed contact holds them: soft enough to lead to the balance in a few
 /// steps, stiff enough to keep thirteen digits.
@@ -25,6 +27,8 @@ const SPRING_RATIO: f64 = 1e-3;
 /// What the contact points are pushed by in an increment.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
+    /// What each row does.
+    pub rows: &'a [Row],
     /// Overclosures without contact forces and motions.
     pub free: &'a [f64],
     /// `Rᵀ f` per motion.
@@ -73,6 +77,8 @@ pub enum SolveFailure {
         /// The motion.
         motions: Vec<f64>,
     },
+    /// Statuses or multipliers were still changing when an increment was given up.
+    Unsettled,
     /// The iteration limit was reached.
     NotConverged {
         /// Points that were still changing or out of balance.

@@ -1,18 +1,10 @@
 //! The contact points as the solver sees them.
 
+use super::row::Row;
 use super::view::{Compliance, View};
-use crate::law::{NormalBehavior, PressureLaw};
+use crate::law::NormalBehavior;
 use crate::solve::linear::Dense;
 use crate::solve::sparse::SparseStructure;
-
-/// Area and behaviour of a contact point.
-#[derive(Clone, Debug)]
-pub struct PointBehavior {
-    /// Tributary area [length²].
-    pub area: f64,
-    /// Index into the behaviours.
-    pub behavior: usize,
-}
 
 /// How contact forces meet the bodies.
 pub enum Structure {
@@ -26,9 +18,9 @@ pub enum Structure {
 pub struct ContactSystem {
     /// `W = B K⁻¹ Bᵀ` [length/force], as a matrix or by solves.
     pub structure: Structure,
-    /// Points.
-    pub points: Vec<PointBehavior>,
-    /// Behaviours that the points refer to.
+    /// Number of rows.
+    pub count: usize,
+    /// Behaviours that curves refer to.
     pub behaviors: Vec<NormalBehavior>,
     /// `D`: points x motions of bodies that only contact holds.
     pub gap_motions: Dense,
@@ -45,7 +37,7 @@ pub struct ContactSystem {
 impl ContactSystem {
     /// `W F`: by how much contact forces take the overclosures back.
     pub fn relief(&self, forces: &[f64], out: &mut [f64]) {
-        self.held(None).relief(forces, out);
+        self.held(&[], None).relief(forces, out);
     }
 
     /// `W_t F`, added to `out`; `dense` is `W_t` where there is one.
@@ -56,13 +48,13 @@ impl ContactSystem {
         }
     }
 
-    /// The points without springs on motions, or with a matrix that has them.
-    pub(super) fn held<'a>(&'a self, with_springs: Option<Compliance<'a>>) -> View<'a> {
+    /// The rows without springs on motions, or with a matrix that has them.
+    pub(super) fn held<'a>(&'a self, rows: &'a [Row], with_springs: Option<Compliance<'a>>) -> View<'a> {
         let compliance = with_springs.unwrap_or(match &self.structure {
             Structure::Dense(w) => Compliance::Dense(w),
             Structure::Sparse(sparse) => Compliance::Sparse(sparse, None),
         });
-        View { compliance, points: &self.points, behaviors: &self.behaviors, extent: self.extent }
+        View { compliance, rows, behaviors: &self.behaviors, extent: self.extent }
     }
 
     /// Final overclosures `h_free − W F + D α` from `free` and the `relief` `W F`. The one place where they are computed, so that a
@@ -74,21 +66,17 @@ impl ContactSystem {
         self.gap_motions.multiply_add(motions, out);
     }
 
-    /// Energy stored in softened contact at the closed points: before the first increment nothing is closed yet, however
-    /// far the meshes overlap.
-    pub fn energy(&self, overclosures: &[f64], closed: &[bool]) -> f64 {
-        let mut sum = 0.0;
-        for (i, point) in self.points.iter().enumerate().filter(|&(i, _)| closed[i]) {
-            if let NormalBehavior::Softened(law) = &self.behaviors[point.behavior] {
-                sum += point.area * law.evaluate(overclosures[i]).energy;
-            }
-        }
-        sum
+    /// Compliance of a row against itself; its scale where it is not known exactly [length/force].
+    pub fn own(&self, row: usize) -> f64 {
+        self.held(&[], None).own(row)
     }
 
-    /// Whether a point is under hard contact.
-    pub fn is_hard(&self, point: usize) -> bool {
-        matches!(self.behaviors[self.points[point].behavior], NormalBehavior::Hard)
+    /// Energy stored in curves at the closed points: before the first increment nothing is closed yet, however far the meshes
+    /// overlap.
+    pub fn energy(&self, rows: &[Row], overclosures: &[f64], closed: &[bool]) -> f64 {
+        (rows.iter().zip(overclosures).zip(closed).filter(|(_, closed)| **closed))
+            .map(|((row, h), _)| row.area * row.law(&self.behaviors, *h).energy)
+            .sum()
     }
 }
 

@@ -26,28 +26,50 @@ fn compliance(numbers: &mut Numbers, n: usize, rank: usize) -> Dense {
     w
 }
 
-fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize) -> usize) -> ContactSystem {
-    let points =
-        (0..compliance.rows).map(|i| PointBehavior { area: 0.5 + 0.1 * i as f64, behavior: pick(i) }).collect();
-    let gap_motions = Dense::zeros(compliance.rows, 0);
-    ContactSystem {
+/// A system with its rows.
+struct Case {
+    system: ContactSystem,
+    rows: Vec<Row>,
+}
+
+impl std::ops::Deref for Case {
+    type Target = ContactSystem;
+
+    fn deref(&self) -> &ContactSystem {
+        &self.system
+    }
+}
+
+fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize) -> usize) -> Case {
+    let count = compliance.rows;
+    let row = |i: usize| {
+        let area = 0.5 + 0.1 * i as f64;
+        match behaviors[pick(i)] {
+            NormalBehavior::Hard => Row { area, wall: Wall::OneSided, ..Row::default() },
+            NormalBehavior::Softened(_) => Row { area, curve: Curve::Law(pick(i) as u32), ..Row::default() },
+        }
+    };
+    let rows = (0..count).map(row).collect();
+    let system = ContactSystem {
         structure: Structure::Dense(compliance),
-        points,
+        count,
         behaviors,
-        gap_motions,
+        gap_motions: Dense::zeros(count, 0),
         resisted: vec![],
         springs: vec![],
         loose: Dense::default(),
         extent: 0.0,
-    }
+    };
+    Case { system, rows }
 }
 
 /// The same with motions.
-fn floating(mut system: ContactSystem, gap_motions: Dense) -> ContactSystem {
+fn floating(mut case: Case, gap_motions: Dense) -> Case {
+    let system = &mut case.system;
     system.springs = initial_springs(&system.structure, &gap_motions);
     system.resisted = vec![true; gap_motions.columns];
     system.gap_motions = gap_motions;
-    system
+    case
 }
 
 /// Unknowns of a system, from nothing.
@@ -63,7 +85,7 @@ struct Solution {
 
 impl Solution {
     fn new(system: &ContactSystem) -> Self {
-        let n = system.points.len();
+        let n = system.count;
         Self {
             forces: vec![0.0; n],
             relief: vec![0.0; n],
@@ -77,7 +99,7 @@ impl Solution {
     fn solve(
         &mut self,
         solver: &mut ContactSolver,
-        system: &ContactSystem,
+        case: &Case,
         free: &[f64],
         load: &[f64],
     ) -> Result<SolveCounts, SolveFailure> {
@@ -90,7 +112,7 @@ impl Solution {
             motions: &mut self.motions,
             springs: &mut self.springs,
         };
-        solver.solve(system, Problem { free, load, load_scale: &load_scale }, &mut unknowns)
+        solver.solve(case, Problem { rows: &case.rows, free, load, load_scale: &load_scale }, &mut unknowns)
     }
 }
 
@@ -107,7 +129,7 @@ fn softened() -> Vec<NormalBehavior> {
     .into()
 }
 
-fn solve(system: &ContactSystem, free: &[f64]) -> (Vec<f64>, Vec<f64>, Result<SolveCounts, SolveFailure>) {
+fn solve(system: &Case, free: &[f64]) -> (Vec<f64>, Vec<f64>, Result<SolveCounts, SolveFailure>) {
     let mut solution = Solution::new(system);
     let result = solution.solve(&mut ContactSolver::new(system), system, free, &[]);
     if result.is_ok() {
@@ -197,7 +219,7 @@ fn every_law_and_mixture_converges_and_satisfies_its_law() {
                 }
                 NormalBehavior::Softened(law) => {
                     let at = law.evaluate(overclosures[i]);
-                    (forces[i] - problem.points[i].area * at.pressure).abs() - rounding * at.stiffness
+                    (forces[i] - problem.rows[i].area * at.pressure).abs() - rounding * at.stiffness
                 }
             };
             assert!(residual < 1e-10 * scale.max(1e-3), "case {case} point {i}: {residual:e} of {scale:e}");
@@ -325,7 +347,7 @@ fn bodies_that_only_contact_holds_come_to_balance_under_every_law() {
                 NormalBehavior::Softened(law) => {
                     let at = law.evaluate(solution.overclosures[i]);
                     let rounding = 1e-11 * scale.max(gap) * at.stiffness;
-                    (solution.forces[i] - system.points[i].area * at.pressure).abs() - rounding
+                    (solution.forces[i] - system.rows[i].area * at.pressure).abs() - rounding
                 }
             };
             assert!(

@@ -1,6 +1,6 @@
 //! The compliance that contact forces work against, with every motion held.
 
-use super::PointBehavior;
+use super::row::{Row, Wall};
 use crate::law::NormalBehavior;
 use crate::solve::linear::Dense;
 use crate::solve::sparse::SparseStructure;
@@ -29,7 +29,7 @@ pub(super) enum Compliance<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub compliance: Compliance<'a>,
-    pub points: &'a [PointBehavior],
+    pub rows: &'a [Row],
     pub behaviors: &'a [NormalBehavior],
     pub extent: f64,
 }
@@ -83,8 +83,8 @@ impl View<'_> {
         }
     }
 
-    /// Whether a point is under hard contact.
-    pub fn is_hard(&self, point: usize) -> bool {
-        matches!(self.behaviors[self.points[point].behavior], NormalBehavior::Hard)
+    /// Whether a row has a wall.
+    pub fn has_wall(&self, i: usize) -> bool {
+        self.rows[i].wall != Wall::None
     }
 }
