@@ -21,7 +21,6 @@ mod sections;
 mod sets;
 mod steps;
 mod surfaces;
-mod variables;
 
 use crate::model::{Boundary, Dialect, InteractionId, Model, Region, SurfaceKind};
 
