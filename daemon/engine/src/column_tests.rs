@@ -82,6 +82,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
                     variables: vec!["RF".into()],
                     frequency: 1,
                     totals: Totals::Only,
+                    summary: true,
                 }],
                 ..OutputRequests::default()
             },

@@ -1,6 +1,6 @@
 //! Steps: procedures, loads, prescribed displacements and output requests.
 
-use super::{AmplitudeId, ElementFace, ElementId, NodeId, SetId, StepContact, SurfaceId};
+use super::{AmplitudeId, ContactPair, ElementFace, ElementId, NodeId, SetId, StepContact, SurfaceId};
 use crate::diagnostic::Place;
 
 /// `*STEP` … `*END STEP`.
@@ -173,7 +173,9 @@ pub struct RestartRequest {
 pub enum OutputTarget {
     /// `... PRINT`: the printed table.
     Print,
-    /// `... FILE`, `*OUTPUT, FIELD`: field results.
+    /// `... FILE`: the results file, and field results.
+    File,
+    /// `*OUTPUT, FIELD`: field results.
     Field,
     /// `*OUTPUT, HISTORY`.
     History,
@@ -204,6 +206,8 @@ pub struct NodeRequest {
     pub frequency: u32,
     /// Rows, totals or both.
     pub totals: Totals,
+    /// `SUMMARY`: whether the extremes of each column are printed below it.
+    pub summary: bool,
 }
 
 /// Request for element values.
@@ -217,6 +221,8 @@ pub struct ElementRequest {
     pub variables: Vec<String>,
     /// Every how many increments. 0: never.
     pub frequency: u32,
+    /// `SUMMARY`: whether the extremes of each column are printed below it.
+    pub summary: bool,
 }
 
 /// Request for contact values.
@@ -224,8 +230,34 @@ pub struct ElementRequest {
 pub struct ContactRequest {
     /// Where to.
     pub target: OutputTarget,
-    /// Variables in upper case, e.g. `CSTR`, `CDIS`, `CFN`.
+    /// Components at the points by name (`CPRESS`, `COPEN`, `CSTATUS`, …) and totals of the pair by family (`CFN`, `CMT`, `XN`, `CAREA`, …).
     pub variables: Vec<String>,
     /// Every how many increments. 0: never.
     pub frequency: u32,
+    /// Pairs with this secondary surface; `None` is any.
+    pub secondary: Option<SurfaceId>,
+    /// Pairs with this primary surface; `None` is any.
+    pub primary: Option<SurfaceId>,
+    /// Secondary nodes of this set; `None` is all.
+    pub nodes: Option<SetId>,
+    /// `TOTALS`: whether the sum of each column is printed below it.
+    pub totals: bool,
+    /// `SUMMARY`: whether the extremes of each column are printed below it.
+    pub summary: bool,
+}
+
+impl ContactRequest {
+    /// Whether it is about a pair. Contact elements have no surfaces: a request that names some is not about them.
+    pub fn selects(&self, pair: &ContactPair) -> bool {
+        let is = |wanted: Option<SurfaceId>, surface: SurfaceId| wanted.is_none_or(|wanted| wanted == surface);
+        match pair.surfaces() {
+            Some(surfaces) => is(self.secondary, surfaces.secondary) && is(self.primary, surfaces.primary),
+            None => self.secondary.is_none() && self.primary.is_none() && self.nodes.is_none(),
+        }
+    }
+
+    /// Whether it asks for one of these variables.
+    pub fn asks_for(&self, names: &[&str]) -> bool {
+        self.variables.iter().any(|variable| names.contains(&variable.as_str()))
+    }
 }

@@ -43,7 +43,7 @@ impl<'a> Plan<'a> {
             .map(|r| (r.target, r.frequency))
             .chain(requests.elements.iter().map(|r| (r.target, r.frequency)))
             .chain(requests.contacts.iter().map(|r| (r.target, r.frequency)))
-            .filter(|(target, _)| *target == OutputTarget::Field)
+            .filter(|(target, _)| matches!(target, OutputTarget::Field | OutputTarget::File))
             .map(|(_, frequency)| frequency)
             .collect();
         let contacts: Vec<u32> = requests.contacts.iter().map(|r| r.frequency).collect();
@@ -137,7 +137,7 @@ mod tests {
     }
 
     fn nodes(target: OutputTarget, set: Option<SetId>, frequency: u32, totals: Totals) -> NodeRequest {
-        NodeRequest { target, set, variables: vec!["U".into()], frequency, totals }
+        NodeRequest { target, set, variables: vec!["U".into()], frequency, totals, summary: true }
     }
 
     #[test]

@@ -1,15 +1,17 @@
 //! Output requests. They hold from step to step until a step asks anew for the same kind.
 
+mod variables;
+
 use crate::model::{
     ContactRequest, Dialect, ElementRequest, NodeRequest, OutputRequests, OutputTarget, RestartFrequency,
-    RestartRequest, SetId, Totals,
+    RestartRequest, SetId, SurfaceId, Totals,
 };
 
 use super::super::card::Card;
-use super::super::lex::{fields, key};
-use super::super::report::{Report, excerpt};
+use super::super::report::excerpt;
 use super::Builder;
 use super::layout::StepCards;
+use variables::{Subject, variables};
 
 /// The three ways to ask.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,49 +41,17 @@ struct Snapshots {
     steps: u32,
 }
 
-/// What is asked for, by the second word of the keyword.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Subject {
-    Nodes,
-    Elements,
-    Contacts,
-}
-
-/// Variables that are written, in the spelling of the decks, and what a request without variables means.
-const NODE_VARIABLES: [&str; 8] = ["U", "RF", "U1", "U2", "U3", "RF1", "RF2", "RF3"];
-const ELEMENT_VARIABLES: [&str; 8] = ["S", "S11", "S22", "S33", "S12", "S13", "S23", "MISES"];
-const CONTACT_VARIABLES: [&str; 18] = [
-    "CSTR", "CSTRESS", "CPRESS", "CSHEAR1", "CSHEAR2", "CDIS", "CDISP", "COPEN", "CSLIP1", "CSLIP2", "CFN", "CFN1",
-    "CFN2", "CFN3", "CFNM", "CAREA", "CSTATUS", "CF",
-];
-
-impl Subject {
-    fn variables(self) -> &'static [&'static str] {
-        match self {
-            Self::Nodes => &NODE_VARIABLES,
-            Self::Elements => &ELEMENT_VARIABLES,
-            Self::Contacts => &CONTACT_VARIABLES,
-        }
-    }
-
-    /// Name of the variable that a component belongs to: tables have all components.
-    fn whole(self, word: &str) -> String {
-        match self {
-            Self::Nodes => word.trim_end_matches(|c: char| c.is_ascii_digit()).into(),
-            Self::Elements => "S".into(),
-            Self::Contacts => word.into(),
-        }
-    }
-
-    fn preselected(self) -> Vec<String> {
-        let names: &[&str] = match self {
-            Self::Nodes => &["U", "RF"],
-            Self::Elements => &["S"],
-            Self::Contacts => &["CSTRESS", "CDISP"],
-        };
-        names.iter().map(|name| name.to_string()).collect()
-    }
-}
+/// A contact request without selection.
+const ALL_PAIRS: ContactRequest = ContactRequest {
+    target: OutputTarget::Field,
+    variables: Vec::new(),
+    frequency: 1,
+    secondary: None,
+    primary: None,
+    nodes: None,
+    totals: false,
+    summary: true,
+};
 
 /// The `*OUTPUT` that holds for the keywords below it.
 #[derive(Clone, Copy)]
@@ -179,7 +149,7 @@ impl Builder<'_> {
             };
             let (target, frequency) = match (family, database) {
                 (Family::Print, _) => (OutputTarget::Print, self.frequency(card)),
-                (Family::File, _) => (OutputTarget::Field, self.frequency(card)),
+                (Family::File, _) => (OutputTarget::File, self.frequency(card)),
                 (Family::Database, Some(database)) => (database.target, database.frequency),
                 (Family::Database, None) => {
                     self.report.warning(
@@ -211,6 +181,7 @@ impl Builder<'_> {
         if variables.is_empty() {
             return;
         }
+        let summary = card.parameters.word("SUMMARY") != "NO";
         match subject {
             Subject::Nodes => {
                 let Ok(set) = self.optional_set(card, "NSET") else { return };
@@ -220,13 +191,55 @@ impl Builder<'_> {
                     "" if card.parameters.has("TOTALS") => Totals::Yes,
                     _ => Totals::No,
                 };
-                requests.nodes.push((family, NodeRequest { target, set, variables, frequency, totals }));
+                requests.nodes.push((family, NodeRequest { target, set, variables, frequency, totals, summary }));
             }
             Subject::Elements => {
                 let Ok(set) = self.optional_set(card, "ELSET") else { return };
-                requests.elements.push((family, ElementRequest { target, set, variables, frequency }));
+                requests.elements.push((family, ElementRequest { target, set, variables, frequency, summary }));
             }
-            Subject::Contacts => requests.contacts.push((family, ContactRequest { target, variables, frequency })),
+            Subject::Contacts => {
+                if let Some(request) =
+                    self.contact_request(card, ContactRequest { target, variables, frequency, summary, ..ALL_PAIRS })
+                {
+                    requests.contacts.push((family, request));
+                }
+            }
+        }
+    }
+
+    /// Adds the selection of a contact request; none when what it names does not exist, which is reported.
+    fn contact_request(&mut self, card: &Card, request: ContactRequest) -> Option<ContactRequest> {
+        let (secondary, primary) = if request.target == OutputTarget::Print || request.target == OutputTarget::File {
+            (
+                self.optional_surface(card, &["SLAVE", "SECONDARY"]).ok()?,
+                self.optional_surface(card, &["MASTER", "MAIN"]).ok()?,
+            )
+        } else {
+            (None, None)
+        };
+        let nodes = match request.target {
+            OutputTarget::Print | OutputTarget::File => self.optional_set(card, "NSET").ok()?,
+            OutputTarget::Field | OutputTarget::History => None,
+        };
+        let totals = card.parameters.has("TOTALS") && card.parameters.word("TOTALS") != "NO";
+        let request = ContactRequest { secondary, primary, nodes, totals, ..request };
+        if (secondary.is_some() || primary.is_some()) && !self.model.pairs.iter().any(|pair| request.selects(pair)) {
+            let message = "no contact pair has these surfaces";
+            let remedy = "SLAVE and MASTER name the surfaces as the data line of *CONTACT PAIR does; leave them out for all pairs";
+            self.report.error(card.at, card.keyword.name, message, remedy);
+            return None;
+        }
+        Some(request)
+    }
+
+    /// Surface of a request, by one of the names that its parameter has: `Err` when it names one that does not exist, which is reported.
+    fn optional_surface(&mut self, card: &Card, parameters: &[&str]) -> Result<Option<SurfaceId>, ()> {
+        match parameters.iter().find_map(|parameter| card.parameters.value(parameter)) {
+            None => Ok(None),
+            Some(name) => {
+                let surface = self.surfaces.refer(name, card.at, card.keyword.name, self.report);
+                surface.map(|surface| Some(SurfaceId(surface))).ok_or(())
+            }
         }
     }
 
@@ -273,42 +286,20 @@ impl Builder<'_> {
                 variables: Subject::Nodes.preselected(),
                 frequency,
                 totals: Totals::No,
+                summary: true,
             };
-            let element = ElementRequest { target, set: None, variables: Subject::Elements.preselected(), frequency };
-            let contact = ContactRequest { target, variables: Subject::Contacts.preselected(), frequency };
+            let element = ElementRequest {
+                target,
+                set: None,
+                variables: Subject::Elements.preselected(),
+                frequency,
+                summary: true,
+            };
+            let contact = ContactRequest { target, variables: Subject::Contacts.preselected(), frequency, ..ALL_PAIRS };
             requests.nodes.push((family, node));
             requests.elements.push((family, element));
             requests.contacts.push((family, contact));
         }
         Database { target, frequency }
     }
-}
-
-/// Variables of a request that are written; others are reported.
-fn variables(card: &Card, subject: Subject, report: &mut Report) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    let mut named = false;
-    for line in card.lines().iter() {
-        for field in fields(line.text.as_bytes()).filter(|field| !field.is_empty()) {
-            named = true;
-            let word = key(&String::from_utf8_lossy(field));
-            if matches!(word.as_str(), "PRESELECT" | "ALL") {
-                found.extend(subject.preselected());
-            } else if !subject.variables().contains(&word.as_str()) {
-                let message = format!("{} is not written", excerpt(field));
-                let remedy = format!("variables are {}", subject.variables().join(", "));
-                report.warning(line.at, card.keyword.name, message, remedy);
-            } else if let Some(name) = Some(subject.whole(&word)).filter(|name| !found.contains(name)) {
-                found.push(name);
-            }
-        }
-    }
-    if !named {
-        if subject != Subject::Contacts && !card.parameters.has("VARIABLE") {
-            report.warning(card.at, card.keyword.name, "the request names no variables", "list them on a data line");
-        } else {
-            found = subject.preselected();
-        }
-    }
-    found
 }
