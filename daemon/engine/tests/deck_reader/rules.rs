@@ -35,7 +35,7 @@ fn the_base_deck_is_read_without_findings() {
     let line = &step.boundaries[0];
     assert_eq!((line.region_name.as_str(), line.direction, line.magnitude, line.place.line), ("TOP", 2, -0.01, 52));
     assert_eq!(step.output.nodes[0].totals, Totals::Only);
-    assert_eq!(step.output.contacts[0].variables, ["CSTR", "CDIS"]);
+    assert_eq!(step.output.contacts[0].variables, ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"]);
     assert!(summary(&model).contains("SECOND_FIRST: secondary 1 faces with 4 nodes"), "{}", summary(&model));
 }
 
