@@ -224,14 +224,14 @@ impl Simulation {
         let moment = Self::moment(&prepared, self.state.step as usize, time);
         let (state, work) = (&mut self.state, &mut self.work);
         for i in 0..points {
-            if work.closed[i] {
+            state.latched[i] |= work.closed[i] && moment.latches(i) && moment.is_active(i);
+            state.stuck[i] = moment.sticks(i, work.closed[i], state.closed[i]);
+            if work.closed[i] && !state.stuck[i] {
                 for at in [i, n + i] {
                     state.slip[at] += work.tangential[at] - state.tangential[at];
                 }
             }
-            state.latched[i] |= work.closed[i] && moment.latches(i) && moment.is_active(i);
             // A point that does not stick would begin to where it is.
-            state.stuck[i] = moment.sticks(i, work.closed[i], state.closed[i]);
             if !state.stuck[i] {
                 state.origins[i] = work.tangential[i];
                 state.origins[points + i] = work.tangential[n + i];

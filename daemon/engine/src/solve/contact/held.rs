@@ -70,6 +70,9 @@ pub struct ContactSolver {
     factor_compliance: Vec<f64>,
     factor_rows: Vec<u32>,
     factors: u32,
+    /// Overclosures after each iteration of the last solve.
+    #[cfg(test)]
+    pub(super) iterates: Vec<Vec<f64>>,
     sparse: SparseWork,
     scratch: DenseScratch,
     pub(super) balance: BalanceWork,
@@ -131,7 +134,10 @@ impl ContactSolver {
         let mut counts = SolveCounts::default();
         let has_walls = (0..n).any(|i| view.has_wall(i));
         let factorizations = self.sparse.factorizations;
+        #[cfg(test)]
+        self.iterates.clear();
         self.on_curve.fill(false);
+        self.floor.fill(0.0);
         for i in 0..n {
             self.on_wall[i] = match view.rows[i].wall {
                 Wall::None => false,
@@ -170,6 +176,8 @@ impl ContactSolver {
             } else {
                 counts.equilibrium_iterations += 1;
             }
+            #[cfg(test)]
+            self.iterates.push(overclosures.to_vec());
             if fraction == 1.0 && self.is_balanced(view, free, forces, overclosures) {
                 counts.factorizations = self.sparse.factorizations - factorizations;
                 // At the kink of a law rounding would choose the status: a force that is rounding closes nothing.
@@ -198,7 +206,7 @@ impl ContactSolver {
     }
 
     /// Linearises the curves at the present overclosures: `F = (h − onset) / compliance` where the slope is positive, no force
-    /// elsewhere. Rows with a wall have their curve below it, and its force at the wall is the least that they carry there.
+    /// elsewhere. Rows with a wall have their curve below it; where it meets the wall is the least that they carry there.
     fn linearise(&mut self, view: &View<'_>, overclosures: &[f64]) {
         for (i, row) in view.rows.iter().enumerate().filter(|(_, row)| row.has_curve()) {
             let walled = row.wall != Wall::None;
@@ -213,9 +221,9 @@ impl ContactSolver {
                 self.curve_compliance[i] = 1.0 / at.stiffness;
                 self.curve_onset[i] = h - at.force / at.stiffness;
             }
-            if walled {
-                self.floor[i] = row.evaluate(view.behaviors, row.position).force;
-            }
+            // Of the linear model, so that a point is either on its wall or below it.
+            let reaches = walled && self.on_curve[i];
+            self.floor[i] = if reaches { (row.position - self.curve_onset[i]) * at.stiffness } else { 0.0 };
         }
     }
 
@@ -440,8 +448,10 @@ impl ContactSolver {
                 let force = forces[i] + t * (self.trial[i] - forces[i]);
                 sum += force * rate;
                 let row = &view.rows[i];
-                if row.has_curve() && !self.on_wall[i] {
-                    sum -= row.evaluate(view.behaviors, overclosures[i] - t * rate).force * rate;
+                if row.has_curve() {
+                    let h = overclosures[i] - t * rate;
+                    let h = if row.wall == Wall::None { h } else { h.min(row.position) };
+                    sum -= row.evaluate(view.behaviors, h).force * rate;
                 }
             }
             sum
@@ -505,8 +515,12 @@ impl ContactSolver {
         scale: f64,
     ) -> bool {
         let row = &view.rows[i];
-        if !row.has_curve() || self.on_wall[i] {
+        if !row.has_curve() {
             return true;
+        }
+        if self.on_wall[i] {
+            let least = row.evaluate(view.behaviors, row.position).force;
+            return row.wall == Wall::TwoSided || forces[i] >= least - FORCE_TOLERANCE * scale;
         }
         let at = row.evaluate(view.behaviors, overclosure);
         let own = view.own(i);

@@ -11,6 +11,8 @@ mod active_sparse;
 mod balance;
 mod held;
 mod row;
+#[cfg(test)]
+mod row_tests;
 mod system;
 #[cfg(test)]
 mod tests;

@@ -5,17 +5,17 @@ use crate::law::{Exponential, Linear, NormalBehavior, PressureLaw, PressureOverc
 use crate::solve::linear::Dense;
 
 /// Seeded numbers in (-1, 1): a multiplicative congruential generator is enough for test problems.
-struct Numbers(u64);
+pub(super) struct Numbers(pub u64);
 
 impl Numbers {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
 
 /// `W = V Vᵀ` with `rank` columns: singular when the rank is below n.
-fn compliance(numbers: &mut Numbers, n: usize, rank: usize) -> Dense {
+pub(super) fn compliance(numbers: &mut Numbers, n: usize, rank: usize) -> Dense {
     let v: Vec<Vec<f64>> = (0..n).map(|_| (0..rank).map(|_| numbers.next()).collect()).collect();
     let mut w = Dense::zeros(n, n);
     for j in 0..n {
@@ -27,9 +27,9 @@ fn compliance(numbers: &mut Numbers, n: usize, rank: usize) -> Dense {
 }
 
 /// A system with its rows.
-struct Case {
-    system: ContactSystem,
-    rows: Vec<Row>,
+pub(super) struct Case {
+    pub system: ContactSystem,
+    pub rows: Vec<Row>,
 }
 
 impl std::ops::Deref for Case {
@@ -40,7 +40,7 @@ impl std::ops::Deref for Case {
     }
 }
 
-fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize) -> usize) -> Case {
+pub(super) fn system(compliance: Dense, behaviors: Vec<NormalBehavior>, pick: impl Fn(usize) -> usize) -> Case {
     let count = compliance.rows;
     let row = |i: usize| {
         let area = 0.5 + 0.1 * i as f64;
@@ -74,17 +74,17 @@ fn floating(mut case: Case, gap_motions: Dense) -> Case {
 
 /// Unknowns of a system, from nothing.
 #[derive(Clone)]
-struct Solution {
-    forces: Vec<f64>,
-    relief: Vec<f64>,
-    closed: Vec<bool>,
-    overclosures: Vec<f64>,
-    motions: Vec<f64>,
-    springs: Vec<f64>,
+pub(super) struct Solution {
+    pub forces: Vec<f64>,
+    pub relief: Vec<f64>,
+    pub closed: Vec<bool>,
+    pub overclosures: Vec<f64>,
+    pub motions: Vec<f64>,
+    pub springs: Vec<f64>,
 }
 
 impl Solution {
-    fn new(system: &ContactSystem) -> Self {
+    pub fn new(system: &ContactSystem) -> Self {
         let n = system.count;
         Self {
             forces: vec![0.0; n],
@@ -96,7 +96,7 @@ impl Solution {
         }
     }
 
-    fn solve(
+    pub fn solve(
         &mut self,
         solver: &mut ContactSolver,
         case: &Case,
@@ -116,7 +116,7 @@ impl Solution {
     }
 }
 
-fn softened() -> Vec<NormalBehavior> {
+pub(super) fn softened() -> Vec<NormalBehavior> {
     let table = Tabular::new(&[(0.0, -0.1), (0.2, 0.05), (3.0, 0.4)]).expect("valid");
     [
         PressureOverclosure::Linear(Linear::new(3.0).expect("valid")),
