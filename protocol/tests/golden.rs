@@ -19,6 +19,7 @@ fn counts() -> Counts {
         severe_discontinuity_iterations: 6,
         cutbacks: 1,
         factorizations: 0,
+        augmentations: 9,
     }
 }
 
@@ -125,6 +126,8 @@ fn each_sample(check: &mut dyn Check) {
         pressure: vec![0.0, 50.0],
         stiffness: vec![0.0, 100.0],
         energy: vec![0.0, 12.5],
+        coefficient: vec![],
+        coefficient_slope: vec![],
     });
     check.message(&OpenRequest {
         token: "5f1c".into(),

@@ -30,6 +30,38 @@ LAWS = {
         {"law.clearance_at_zero_pressure": 0.01, "law.pressure_at_zero_clearance": 5.0},
         ["c0=0.01", "p0=5"],
     ),
+    "penalty": (5, {"law.stiffness": 3000.0, "penalty.clearance": 0.002}, ["stiffness=3000", "c0=0.002"]),
+    "nonlinear-penalty": (
+        6,
+        {
+            "penalty.stiffness_initial": 100.0,
+            "penalty.stiffness_final": 1e4,
+            "penalty.lower": 0.01,
+            "penalty.upper": 0.03,
+            "penalty.clearance": 0.005,
+        },
+        ["ki=100", "kf=1e4", "d=0.01", "e=0.03", "c0=0.005"],
+    ),
+    "augmented-lagrange": (
+        7,
+        {"law.stiffness": 3000.0, "penalty.multiplier": 6.0},
+        ["stiffness=3000", "multiplier=6"],
+    ),
+    "linear without separation": (
+        1,
+        {"law.stiffness": 250.0, "law.separation": 1},
+        ["stiffness=250", "separation=prevented", "procedure=explicit"],
+    ),
+    "tabular without separation": (
+        2,
+        {"table.text": TEXT, "law.separation": 1},
+        [f"table={TEXT}", "separation=prevented", "procedure=explicit"],
+    ),
+    "penalty without separation": (
+        5,
+        {"law.stiffness": 250.0, "law.separation": 1},
+        ["stiffness=250", "separation=prevented"],
+    ),
 }
 AT = [-0.03, -0.01, -0.005, 0.0, 0.004, 0.015, 0.03, 0.06, 0.2]
 
@@ -49,13 +81,41 @@ def by_command_line(kind, parameters):
 @pytest.mark.parametrize("law_name", LAWS)
 def test_the_fmu_gives_the_bits_of_the_command_line(law, law_name, twin):
     kind, parameters, words = LAWS[law_name]
-    assert law.set_values(parameters | {"law.kind_integer" if twin else "law.kind": kind, "area": 2.0}) == OK, law.log
+    # The kind before an option that the present kind would refuse, after everything else.
+    last = {"law.separation": parameters["law.separation"]} if "law.separation" in parameters else {}
+    assert law.set_values(parameters | {"law.kind_integer" if twin else "law.kind": kind, "area": 2.0} | last) == OK, (
+        law.log
+    )
     for h, (pressure, stiffness, energy) in zip(AT, by_command_line(law_name, words), strict=True):
         assert law.set(overclosure=h, closing_velocity=-0.25) == OK
         assert law.reals(["pressure", "stiffness", "energy"]) == [pressure, stiffness, energy]
         assert law.reals(["force", "force_stiffness", "stored_energy"]) == [2 * pressure, 2 * stiffness, 2 * energy]
         assert law.real("power") == 2 * pressure * -0.25
         assert law.integer("status") == int(pressure != 0)
+
+
+def test_damping_is_that_of_the_command_line_and_adds_to_the_force(law):
+    parameters = {"coefficient": 8.0, "clearance": 0.1, "fraction": 0.4}
+    assert law.set_values({f"damping.{name}": value for name, value in parameters.items()} | {"area": 2.0}) == OK
+    assert law.set_values({"law.stiffness": 250.0}) == OK
+    at = [-0.2, -0.1, -0.08, -0.05, 0.0, 0.06]
+    words = [word for name, value in parameters.items() for word in ("--param", f"{name}={value}")]
+    done = support.call("law", "damping", *words, "--at=" + ",".join(map(repr, at)))
+    assert done.returncode == 0, done.stderr
+    for h, row in zip(at, csv.DictReader(io.StringIO(done.stdout)), strict=True):
+        coefficient, slope = float(row["coefficient"]), float(row["slope"])
+        for speed in (0.25, 0.0, -0.5):
+            assert law.set(overclosure=h, closing_velocity=speed) == OK
+            pressure, viscous = law.real("pressure"), law.real("viscous_pressure")
+            assert law.real("damping_coefficient") == coefficient and viscous == coefficient * speed
+            assert law.real("force") == 2 * (pressure + viscous)
+            assert law.real("power") == law.real("force") * speed
+            assert law.real("dissipated_power") == 2 * viscous * speed >= 0
+            assert law.reals(["force_stiffness", "force_damping"]) == [
+                2 * (law.real("stiffness") + slope * speed),
+                2 * coefficient,
+            ]
+            assert law.integer("status") == (1 if pressure else 2 if viscous else 0)
 
 
 def test_fmpy_sets_parameters_and_tables_as_start_values(law_file):
@@ -106,6 +166,14 @@ def test_outputs_follow_during_initialisation(law_fmu, new_instance):
         ({"law.kind": 2, "table.text": "0:0,1:x"}, "table"),
         ({"law.kind": 2, "table.text": "0:0,2:1,1:2"}, "table"),
         ({"law.kind": 2, "table.n": 3}, "table"),
+        ({"law.kind": 6, "penalty.lower": 1e-4}, "lower"),
+        ({"law.kind": 6, "penalty.stiffness_final": 1e7}, "stiffness_final"),
+        ({"law.kind": 7, "penalty.multiplier": -1.0}, "multiplier"),
+        ({"law.kind": 5, "penalty.clearance": -1e-4}, "clearance_at_zero_pressure"),
+        ({"law.kind": 3, "law.separation": 1}, "separation"),
+        ({"damping.coefficient": -1.0}, "damping"),
+        ({"damping.coefficient": 1.0, "damping.fraction": 1.0}, "fraction"),
+        ({"damping.coefficient": 1.0, "damping.clearance": 0.0}, "clearance"),
     ],
 )
 def test_parameters_that_make_no_law_are_named_and_the_previous_values_stay(law_fmu, new_instance, values, named):
@@ -137,7 +205,15 @@ def test_initialisation_can_be_mended(law_fmu, new_instance):
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("law.kind", 0), ("law.kind", 5), ("law.kind_integer", -1), ("table.n", 1), ("table.n", 101)]
+    ("name", "value"),
+    [
+        ("law.kind", 0),
+        ("law.kind", 8),
+        ("law.kind_integer", -1),
+        ("law.separation", 2),
+        ("table.n", 1),
+        ("table.n", 101),
+    ],
 )
 def test_integers_outside_their_bounds_are_refused(law, name, value):
     before = law.integer(name)

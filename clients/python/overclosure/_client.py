@@ -113,10 +113,10 @@ class Client:
         return self._ask("load", Load)
 
     def law(self, kind: str, params: Mapping[str, LawParameter], overclosures: npt.ArrayLike) -> LawCurve:
-        """Evaluate a pressure-overclosure relationship.
+        """Evaluate a pressure-overclosure relationship, or contact damping.
 
         Args:
-            kind: ``linear``, ``tabular``, ``exponential``, ...; see ``info().law_kinds``.
+            kind: ``linear``, ``tabular``, ``exponential``, ``penalty``, ``damping``, ...; see ``info().law_kinds``.
             params: parameters by name, e.g. ``{"c0": 0.01, "p0": 5}``; a table as text (``"p1:h1,p2:h2"``) or as a
                 sequence of (pressure, overclosure) pairs.
             overclosures: positive when the bodies overlap [length]; any shape, evaluated flat.
@@ -129,7 +129,15 @@ class Client:
         flat = np.ravel(np.asarray(overclosures, dtype=np.float64))
         request = LawRequest(kind, parameters, flat)
         reply = self._request(f"overclosure/v1/{self.daemon}/law", request, LawReply, self._quick)
-        return LawCurve(reply.kind, reply.overclosure, reply.pressure, reply.stiffness, reply.energy)
+        return LawCurve(
+            reply.kind,
+            reply.overclosure,
+            reply.pressure,
+            reply.stiffness,
+            reply.energy,
+            reply.coefficient,
+            reply.coefficient_slope,
+        )
 
     def open(
         self,

@@ -203,14 +203,16 @@ class LawRequest:
 
 @dataclass
 class LawReply:
-    """An evaluated law."""
+    """An evaluated law; the arrays that its kind does not have are empty."""
 
-    SCHEMA: ClassVar = Schema("LawReply")
+    SCHEMA: ClassVar = Schema("LawReply", 2)
     kind: String
     overclosure: FloatArray
     pressure: FloatArray
     stiffness: FloatArray
     energy: FloatArray
+    coefficient: FloatArray
+    coefficient_slope: FloatArray
 
 
 @dataclass
@@ -295,13 +297,14 @@ class Counts:
     severe_discontinuity_iterations: U32
     cutbacks: U32
     factorizations: U32
+    augmentations: U32
 
 
 @dataclass
 class StepReply:
     """Result of a step."""
 
-    SCHEMA: ClassVar = Schema("StepReply")
+    SCHEMA: ClassVar = Schema("StepReply", 2)
     sequence: U64
     status: Annotated[str, Choice("reached", "stopped", "increment_limit", "cancelled")]
     reason: String
@@ -401,7 +404,7 @@ class StepSummary:
 class Report:
     """Steps so far, work and findings."""
 
-    SCHEMA: ClassVar = Schema("Report")
+    SCHEMA: ClassVar = Schema("Report", 2)
     session: String
     sequence_next: U64
     time: F64

@@ -13,7 +13,9 @@ LabelArray = np.ndarray[Any, np.dtype[np.uint32]]
 
 @dataclass(frozen=True)
 class LawCurve:
-    """A pressure-overclosure relationship at many overclosures.
+    """A pressure-overclosure relationship, or contact damping, at many overclosures.
+
+    Arrays that the kind does not have are empty: those of the pressure for ``damping``, those of the damping for a law.
 
     Attributes:
         kind: the law.
@@ -21,6 +23,8 @@ class LawCurve:
         pressure: contact pressure [pressure], positive pushes the bodies apart.
         stiffness: slope of the pressure [pressure/length].
         energy: integral of the pressure [pressure*length].
+        coefficient: of ``damping``: viscous pressure per closing speed [pressure*time/length].
+        coefficient_slope: of ``damping``: its slope over the overclosure [pressure*time/length^2].
 
     """
 
@@ -29,3 +33,5 @@ class LawCurve:
     pressure: FloatArray
     stiffness: FloatArray
     energy: FloatArray
+    coefficient: FloatArray
+    coefficient_slope: FloatArray

@@ -85,7 +85,7 @@ def test_damaged_bytes_are_read_or_refused_but_nothing_else(vector):
 def test_a_length_beyond_the_data_is_refused_before_anything_is_allocated():
     # Kind "", then 2**62 overclosures that are not there.
     with pytest.raises(DecodeError, match="cannot fit"):
-        decode(KINDS["LawReply/1"], bytes([0, *[0x80] * 8, 0x40]))
+        decode(KINDS["LawReply/2"], bytes([0, *[0x80] * 8, 0x40]))
 
 
 def test_arrays_are_views_of_the_received_bytes():

@@ -40,6 +40,30 @@ def test_a_table_may_be_pairs_or_text(client):
     np.testing.assert_array_equal(pairs.pressure, text.pressure)
 
 
+def test_every_kind_of_law_comes_over_the_wire(client):
+    parameters = {
+        "linear": {"stiffness": 250},
+        "tabular": {"table": [(0, 0), (10, 0.1)]},
+        "exponential": {"c0": 0.01, "p0": 5},
+        "calculix-exponential": {"c0": 0.01, "p0": 5},
+        "penalty": {"stiffness": 3000, "clearance": 0.002},
+        "nonlinear-penalty": {"ki": 100, "kf": 1e4, "d": 0.01, "e": 0.03},
+        "augmented-lagrange": {"stiffness": 3000, "multiplier": 6},
+        "damping": {"mu0": 8, "c0": 0.1, "eta": 0.4},
+    }
+    assert sorted(client.info().law_kinds) == sorted(parameters)
+    h = np.array([-0.05, -0.001, 0.0, 0.02])
+    curves = {kind: client.law(kind, values, h) for kind, values in parameters.items()}
+    for kind, curve in curves.items():
+        damping = kind == "damping"
+        assert [curve.pressure.size, curve.stiffness.size, curve.energy.size] == [0 if damping else 4] * 3, kind
+        assert [curve.coefficient.size, curve.coefficient_slope.size] == [4 if damping else 0] * 2, kind
+    np.testing.assert_allclose(curves["penalty"].pressure, [0, 3, 6, 66], rtol=1e-14)
+    np.testing.assert_allclose(curves["nonlinear-penalty"].pressure, [0, 0, 0, 26.75], rtol=1e-14)
+    np.testing.assert_allclose(curves["augmented-lagrange"].pressure, [0, 3, 6, 66], rtol=1e-14)
+    np.testing.assert_allclose(curves["damping"].coefficient, [8 * 0.05 / 0.06, 8, 8, 8], rtol=1e-14)
+
+
 def test_a_refused_law_is_an_exception_with_its_reasons(client):
     with pytest.raises(overclosure.Fault) as caught:
         client.law("linear", {}, [0.0])

@@ -1,9 +1,9 @@
-//! `overclosure law`: a pressure-overclosure relationship as a table.
+//! `overclosure law`: a pressure-overclosure relationship, or contact damping, as a table.
 
 use std::io::Write;
 
 use clap::Args;
-use overclosure::law::{LawSpec, PressureLaw};
+use overclosure::law::{self, Damping, PressureLaw, Relationship};
 
 use super::{Exit, closed, complain};
 
@@ -13,23 +13,31 @@ const ROWS_MAX: f64 = 1e8;
 /// Arguments of `overclosure law`.
 #[derive(Args)]
 #[command(after_help = "\
-Kinds and parameters, with their short names:
+Kinds and parameters, with their short names; [optional]:
   linear                stiffness (k)
   tabular               table=p1:h1,p2:h2,...   pressure:overclosure, both increasing, the first pressure 0
   exponential           clearance_at_zero_pressure (c0), pressure_at_zero_clearance (p0), [stiffness_max (kmax)]
   calculix-exponential  clearance (c0), pressure (p0)
-and for all: separation=allowed|prevented, procedure=standard|explicit.
+  penalty               stiffness (k), [clearance_at_zero_pressure (c0)]
+  nonlinear-penalty     stiffness_initial (ki), stiffness_final (kf), lower (d), upper (e), [clearance_at_zero_pressure (c0)]
+  augmented-lagrange    stiffness (k), multiplier (lambda), [clearance_at_zero_pressure (c0)]
+  damping               coefficient (mu0), clearance (c0), [fraction (eta)]
+and for all but damping: separation=allowed|prevented, procedure=standard|explicit.
 
-Overclosure is positive when the bodies overlap. Columns: overclosure, pressure, stiffness (its slope), energy (its integral).")]
+Overclosure is positive when the bodies overlap. Columns: overclosure, pressure, stiffness (its slope), energy (its integral);
+for damping: overclosure, coefficient (viscous pressure per closing speed), slope (of the coefficient over the overclosure).")]
 pub struct LawArgs {
-    /// linear, tabular, exponential or calculix-exponential.
+    /// linear, tabular, exponential, calculix-exponential, penalty, nonlinear-penalty, augmented-lagrange or damping.
     kind: String,
     /// Parameters of the law.
     #[arg(long = "param", short = 'p', value_name = "NAME=VALUE", num_args = 1..)]
     parameters: Vec<String>,
     /// Overclosures: FROM:TO:STEP (TO included) or h1,h2,...
-    #[arg(long, value_name = "OVERCLOSURES", allow_hyphen_values = true)]
-    at: String,
+    #[arg(long, value_name = "OVERCLOSURES", allow_hyphen_values = true, required_unless_present = "at_pressure")]
+    at: Option<String>,
+    /// Instead of overclosures, pressures: each row is where the law transmits that pressure (its inverse).
+    #[arg(long, value_name = "PRESSURES", allow_hyphen_values = true, conflicts_with = "at")]
+    at_pressure: Option<String>,
 }
 
 /// Runs the verb.
@@ -42,47 +50,73 @@ pub fn run(arguments: LawArgs) -> Exit {
             None => complaints.push(format!("--param {parameter}: not of the form NAME=VALUE")),
         }
     }
-    let law = LawSpec::read(&arguments.kind, &pairs);
-    if let Err(errors) = &law {
+    let relationship = law::read(&arguments.kind, &pairs);
+    if let Err(errors) = &relationship {
         complaints.extend(errors.0.iter().map(ToString::to_string));
     }
-    let overclosures = Overclosures::parse(&arguments.at);
-    if let Err(complaint) = &overclosures {
-        complaints.push(format!("--at {}: {complaint}", arguments.at));
+    let (option, text) = match (&arguments.at, &arguments.at_pressure) {
+        (Some(at), _) => ("--at", at.as_str()),
+        (None, Some(at)) => ("--at-pressure", at.as_str()),
+        (None, None) => ("--at", ""),
+    };
+    let places = Places::parse(text);
+    if let Err(complaint) = &places {
+        complaints.push(format!("{option} {text}: {complaint}"));
     }
-    match (law, overclosures) {
-        (Ok(law), Ok(overclosures)) if complaints.is_empty() => match write(&law, &overclosures) {
-            Ok(()) => Exit::Done,
-            Err(error) => closed(&error),
-        },
-        _ => {
-            for complaint in complaints {
-                complain(&format!("error: {complaint}"));
-            }
+    let inverse = arguments.at.is_none();
+    if inverse && matches!(relationship, Ok(Relationship::Damping(_))) {
+        complaints.push("--at-pressure: contact damping has no pressure of its own; give --at".to_owned());
+    }
+    let (Ok(relationship), Ok(places), true) = (relationship, places, complaints.is_empty()) else {
+        for complaint in complaints {
+            complain(&format!("error: {complaint}"));
+        }
+        return Exit::InputWrong;
+    };
+    let written = match relationship {
+        Relationship::Pressure(spec) => spec.resolve().map(|law| write_law(&law, &places, inverse)),
+        Relationship::Damping(spec) => spec.resolve().map(|damping| write_damping(damping, &places)),
+    };
+    match written {
+        Ok(Ok(())) => Exit::Done,
+        Ok(Err(error)) => closed(&error),
+        Err(errors) => {
+            complain(&format!("error: {errors}"));
             Exit::InputWrong
         }
     }
 }
 
-fn write(law: &dyn PressureLaw, overclosures: &Overclosures) -> std::io::Result<()> {
+fn write_law(law: &dyn PressureLaw, places: &Places, inverse: bool) -> std::io::Result<()> {
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     writeln!(out, "overclosure,pressure,stiffness,energy")?;
-    for i in 0..overclosures.count() {
-        let h = overclosures.at(i);
+    for i in 0..places.count() {
+        let h = if inverse { law.overclosure_at(places.at(i)) } else { places.at(i) };
         let point = law.evaluate(h);
         writeln!(out, "{h:.16e},{:.16e},{:.16e},{:.16e}", point.pressure, point.stiffness, point.energy)?;
     }
     out.flush()
 }
 
-/// What `--at` asks for.
+fn write_damping(damping: Damping, places: &Places) -> std::io::Result<()> {
+    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    writeln!(out, "overclosure,coefficient,slope")?;
+    for i in 0..places.count() {
+        let h = places.at(i);
+        let (coefficient, slope) = damping.at(h);
+        writeln!(out, "{h:.16e},{coefficient:.16e},{slope:.16e}")?;
+    }
+    out.flush()
+}
+
+/// What `--at` or `--at-pressure` asks for.
 #[derive(Debug, PartialEq)]
-enum Overclosures {
+enum Places {
     Range { from: f64, step: f64, count: usize },
     List(Vec<f64>),
 }
 
-impl Overclosures {
+impl Places {
     fn parse(text: &str) -> Result<Self, String> {
         if !text.contains(':') {
             let list = text.split(',').map(number).collect::<Result<_, _>>()?;
@@ -133,21 +167,21 @@ mod tests {
     #[test]
     fn a_range_includes_its_end_within_rounding() {
         for (text, count) in [("0:1:0.1", 11), ("-0.01:0.03:0.01", 5), ("0:1:0.3", 4), ("1:0:-0.5", 3), ("2:2:1", 1)] {
-            assert_eq!(Overclosures::parse(text).unwrap().count(), count, "{text}");
+            assert_eq!(Places::parse(text).unwrap().count(), count, "{text}");
         }
-        let range = Overclosures::parse("-1:1:0.1").unwrap();
+        let range = Places::parse("-1:1:0.1").unwrap();
         assert_eq!(range.at(7), -1.0 + 7.0 * 0.1);
     }
 
     #[test]
     fn a_list_keeps_its_numbers() {
-        assert_eq!(Overclosures::parse("-0.005,0, 1e300").unwrap(), Overclosures::List(vec![-0.005, 0.0, 1e300]));
+        assert_eq!(Places::parse("-0.005,0, 1e300").unwrap(), Places::List(vec![-0.005, 0.0, 1e300]));
     }
 
     #[test]
     fn nonsense_is_refused() {
         for text in ["", "a", "0:1", "0:1:0", "0:1:-1", "0:1:1e-12", "nan", "0:inf:1", "1,,2", "0:1:1:1"] {
-            assert!(Overclosures::parse(text).is_err(), "{text}");
+            assert!(Places::parse(text).is_err(), "{text}");
         }
     }
 }

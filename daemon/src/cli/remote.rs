@@ -273,12 +273,14 @@ fn step(arguments: &StepArgs) -> Result<Exit, Failure> {
     })?;
     let counts = &reply.counts;
     let mut text = format!(
-        "time {}\nincrements {}\nsevere_discontinuity_iterations {}\nequilibrium_iterations {}\ncutbacks {}\n",
+        "time {}\nincrements {}\nsevere_discontinuity_iterations {}\nequilibrium_iterations {}\n\
+         cutbacks {}\naugmentations {}\n",
         reply.time,
         counts.increments,
         counts.severe_discontinuity_iterations,
         counts.equilibrium_iterations,
-        counts.cutbacks
+        counts.cutbacks,
+        counts.augmentations
     );
     for (port, value) in session.ports().outputs.iter().zip(&reply.outputs) {
         text += &format!("{} {value:?}\n", port.name);

@@ -74,16 +74,22 @@ fn quantity(quantity: port::Quantity) -> Quantity {
 }
 
 pub fn counts(counts: &WorkCounts) -> Counts {
-    // Augmentations are a port; messages do not carry them.
     let WorkCounts {
         increments,
         equilibrium_iterations,
         severe_discontinuity_iterations,
         cutbacks,
         factorizations,
-        augmentations: _,
+        augmentations,
     } = *counts;
-    Counts { increments, equilibrium_iterations, severe_discontinuity_iterations, cutbacks, factorizations }
+    Counts {
+        increments,
+        equilibrium_iterations,
+        severe_discontinuity_iterations,
+        cutbacks,
+        factorizations,
+        augmentations,
+    }
 }
 
 pub fn step_summary(report: &StepReport) -> StepSummary {

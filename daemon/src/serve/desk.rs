@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
-use overclosure::law::{LawPoint, LawSpec};
+use overclosure::law::{self, LawPoint, Relationship};
 use overclosure_protocol::PROTOCOL_VERSION;
 use overclosure_protocol::arguments;
 use overclosure_protocol::codec::Format;
@@ -21,9 +21,6 @@ use super::session::guarded;
 
 /// Requests that may wait for each thread.
 const WAITING: usize = 256;
-
-/// Kinds that [`LawSpec`] knows.
-pub const LAW_KINDS: [&str; 4] = ["linear", "tabular", "exponential", "calculix-exponential"];
 
 /// A short answer.
 enum Short {
@@ -145,7 +142,7 @@ fn info(daemon: &str, limits: Limits) -> Info {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         protocol: PROTOCOL_VERSION,
         encodings: Format::ALL.iter().map(|f| f.media_type().to_owned()).collect(),
-        law_kinds: LAW_KINDS.iter().map(|&k| k.to_owned()).collect(),
+        law_kinds: law::KINDS.iter().map(|&k| k.to_owned()).collect(),
         dialects: Dialect::ALL.iter().map(ToString::to_string).collect(),
         limits,
     }
@@ -182,17 +179,23 @@ fn evaluate(request: &LawRequest, points_max: u32) -> Result<LawReply, Fault> {
         return Err(Fault::new(FaultCode::NotFinite, format!("overclosure {bad} is not a finite number")));
     }
     let pairs: Vec<(&str, &str)> = request.parameters.iter().map(|p| (p.name.as_str(), p.value.as_str())).collect();
-    let law =
-        LawSpec::read(&request.kind, &pairs).map_err(|errors| Fault::new(FaultCode::LawRefused, errors.to_string()))?;
-    let mut points = vec![LawPoint::default(); overclosure.len()];
-    law.evaluate_into(overclosure, &mut points);
-    Ok(LawReply {
-        kind: request.kind.clone(),
-        overclosure: overclosure.clone(),
-        pressure: points.iter().map(|p| p.pressure).collect(),
-        stiffness: points.iter().map(|p| p.stiffness).collect(),
-        energy: points.iter().map(|p| p.energy).collect(),
-    })
+    let refused = |errors: law::LawSpecErrors| Fault::new(FaultCode::LawRefused, errors.to_string());
+    let mut reply = LawReply { kind: request.kind.clone(), overclosure: overclosure.clone(), ..LawReply::default() };
+    match law::read(&request.kind, &pairs).map_err(refused)? {
+        Relationship::Pressure(spec) => {
+            let law = spec.resolve().map_err(refused)?;
+            let mut points = vec![LawPoint::default(); overclosure.len()];
+            law.evaluate_into(overclosure, &mut points);
+            reply.pressure = points.iter().map(|p| p.pressure).collect();
+            reply.stiffness = points.iter().map(|p| p.stiffness).collect();
+            reply.energy = points.iter().map(|p| p.energy).collect();
+        }
+        Relationship::Damping(spec) => {
+            let damping = spec.resolve().map_err(refused)?;
+            (reply.coefficient, reply.coefficient_slope) = overclosure.iter().map(|&h| damping.at(h)).unzip();
+        }
+    }
+    Ok(reply)
 }
 
 #[cfg(test)]
@@ -203,8 +206,8 @@ mod tests {
 
     #[test]
     fn every_kind_announced_is_known() {
-        for kind in LAW_KINDS {
-            let errors = LawSpec::read::<&str, &str>(kind, &[]).expect_err("parameters are missing");
+        for kind in law::KINDS {
+            let errors = law::read::<&str, &str>(kind, &[]).expect_err("parameters are missing");
             assert!(!errors.0.iter().any(|e| matches!(e, LawSpecError::UnknownKind { .. })), "{kind}");
         }
     }
@@ -227,5 +230,18 @@ mod tests {
         request.overclosure[0] = 0.0;
         request.kind = "hard".into();
         assert_eq!(evaluate(&request, 10).expect_err("no curve").code, FaultCode::LawRefused);
+    }
+
+    #[test]
+    fn damping_answers_with_its_coefficient_alone() {
+        let parameter = |name: &str, value: &str| Parameter { name: name.into(), value: value.into() };
+        let request = LawRequest {
+            kind: "damping".into(),
+            parameters: vec![parameter("mu0", "8"), parameter("c0", "0.5"), parameter("eta", "0.5")],
+            overclosure: vec![0.1, -0.375, -1.0],
+        };
+        let reply = evaluate(&request, 10).expect("a good damping");
+        assert_eq!((reply.coefficient, reply.coefficient_slope), (vec![8.0, 4.0, 0.0], vec![0.0, 32.0, 0.0]));
+        assert!(reply.pressure.is_empty() && reply.stiffness.is_empty() && reply.energy.is_empty());
     }
 }

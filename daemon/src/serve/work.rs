@@ -379,6 +379,7 @@ fn difference(before: &Counts, after: &Counts) -> Counts {
             .saturating_sub(before.severe_discontinuity_iterations),
         cutbacks: after.cutbacks.saturating_sub(before.cutbacks),
         factorizations: after.factorizations.saturating_sub(before.factorizations),
+        augmentations: after.augmentations.saturating_sub(before.augmentations),
     }
 }
 

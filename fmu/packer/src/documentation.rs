@@ -56,7 +56,7 @@ pub const DECK_BEHAVIOUR: [&str; 6] = [
 ];
 
 /// Behaviour of a law.
-pub const LAW_BEHAVIOUR: [&str; 5] = [
+pub const LAW_BEHAVIOUR: [&str; 7] = [
     "Outputs follow inputs and parameters at once, without a step.",
     "Parameters may be set before the initialisation ends and between steps. Only those of the chosen law count. A \
      combination that makes no law is refused with the parameter's name: at the end of the initialisation, or when it is \
@@ -64,6 +64,10 @@ pub const LAW_BEHAVIOUR: [&str; 5] = [
     "law.kind chooses the law; importers without enumerations set law.kind_integer instead (0 leaves the choice to law.kind).",
     "A table is given as text in table.text, or, when that is empty, by table.n, table.pressure[i] and \
      table.overclosure[i]. Between steps, set table.n after the points.",
+    "Contact damping acts beside any law when damping.coefficient is not zero: viscous_pressure is the coefficient times \
+     closing_velocity, up to the clearance damping.clearance; force and power include it, pressure does not.",
+    "law.separation = 1 means surfaces that have met before and may not part: linear, tabular and the penalties go on into \
+     tension with their first slope; the exponential laws are refused.",
     "Energy is per area, stored_energy is for the whole area; likewise stiffness and force_stiffness.",
 ];
 

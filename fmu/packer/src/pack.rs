@@ -374,6 +374,11 @@ fn law_plan(variables: &[Variable]) -> Plan {
         point.energy,
         area * point.energy,
         force * velocity,
+        // Without damping, as the start values have it.
+        0.0,
+        0.0,
+        0.0,
+        0.0,
     ];
     let position = |name: &str| variables.iter().position(|variable| variable.name == name).unwrap_or_default() as u32;
     Plan {

@@ -173,7 +173,7 @@ message! {
 
 message! {
     /// What a step of the deck has done so far.
-    pub struct StepSummary/1 {
+    pub struct StepSummary/2 {
         /// Name of the step.
         pub name: String,
         /// Its procedure, e.g. `*STATIC`.
@@ -188,7 +188,7 @@ message! {
 
 message! {
     /// Reply to `report`.
-    pub struct Report/1 {
+    pub struct Report/2 {
         /// The session.
         pub session: String,
         /// Sequence number that the next step or restore must carry.

@@ -42,7 +42,7 @@ choice! {
 
 message! {
     /// Work done.
-    pub struct Counts/1 {
+    pub struct Counts/2 {
         /// Increments completed.
         pub increments: u32,
         /// Equilibrium iterations.
@@ -53,12 +53,14 @@ message! {
         pub cutbacks: u32,
         /// Sparse factorisations.
         pub factorizations: u32,
+        /// Augmentations: times that multipliers of augmented Lagrange were brought up to date.
+        pub augmentations: u32,
     }
 }
 
 message! {
     /// Reply to `step`.
-    pub struct StepReply/1 {
+    pub struct StepReply/2 {
         /// Sequence number of the request; the next one is one higher.
         pub sequence: u64,
         /// How the step ended.
@@ -120,7 +122,7 @@ message! {
     /// Request of `field`.
     #[serde(deny_unknown_fields)]
     pub struct FieldRequest/1 {
-        /// Name, e.g. `U`, `RF`, `S`, `CPRESS`, `COPEN`.
+        /// Name, e.g. `U`, `RF`, `S`, `CPRESS`, `COPEN`, `CSTATUS`.
         pub name: String,
     }
 }

@@ -123,6 +123,6 @@ fn a10_tabular_that_starts_at_a_clearance() {
 #[test]
 fn a12_linear_without_separation() {
     let case = case("A12");
-    let law = PressureOverclosure::Linear(Linear::new(number(&case["inputs"]["k"])).unwrap());
-    compare(&case, &ResolvedLaw::new(law, Separation::Prevented, LawProcedure::Explicit).unwrap());
+    let law = LawParameters::Linear { stiffness: number(&case["inputs"]["k"]) }.into();
+    compare(&case, &ResolvedLaw::new(&law, Separation::Prevented, LawProcedure::Explicit).unwrap());
 }

@@ -11,6 +11,16 @@ pub enum LawError {
         /// The value.
         value: f64,
     },
+    /// A number outside what the law allows.
+    #[error("{parameter} must be {bounds}, not {value}")]
+    OutOfBounds {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// What is allowed, in words.
+        bounds: &'static str,
+        /// The value.
+        value: f64,
+    },
     /// A table that is no curve.
     #[error("a table needs at least two points (pressure, overclosure); this one has {count}")]
     TooFewPoints {
@@ -78,5 +88,18 @@ pub(super) fn require_positive(findings: &mut Vec<LawError>, parameter: &'static
 pub(super) fn require_in_range(findings: &mut Vec<LawError>, law: &'static str, quantity: &'static str, value: f64) {
     if !(value.is_finite() && value > 0.0) {
         findings.push(LawError::OutOfRange { law, quantity, value });
+    }
+}
+
+/// Appends a finding unless `value` is finite and within what the words say.
+pub(super) fn require(
+    findings: &mut Vec<LawError>,
+    parameter: &'static str,
+    bounds: &'static str,
+    value: f64,
+    within: bool,
+) {
+    if !(value.is_finite() && within) {
+        findings.push(LawError::OutOfBounds { parameter, bounds, value });
     }
 }

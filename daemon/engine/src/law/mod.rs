@@ -8,6 +8,7 @@
 //! ([`LawPoint::pressure`], `stiffness` and `energy` each on its own).
 
 mod calculix_exponential;
+mod curve;
 mod damping;
 mod error;
 mod exponential;
@@ -24,6 +25,7 @@ mod cases;
 pub(crate) mod check;
 
 pub use calculix_exponential::CalculixExponential;
+pub use curve::CurveParameters;
 pub use damping::Damping;
 pub use error::LawError;
 pub use exponential::Exponential;
@@ -31,7 +33,7 @@ pub use linear::Linear;
 pub use parameters::LawParameters;
 pub use penalty::Penalty;
 pub use resolved::{LawProcedure, ResolvedLaw, Separation};
-pub use spec::{LawSpec, LawSpecError, LawSpecErrors};
+pub use spec::{DampingSpec, KINDS, LawSpec, LawSpecError, LawSpecErrors, Relationship, read};
 pub use tabular::Tabular;
 
 use serde::{Deserialize, Serialize};

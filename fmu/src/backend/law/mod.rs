@@ -4,7 +4,9 @@ mod variables;
 
 pub use variables::{LAW_KIND, TABLE_POINTS_MAX, variables};
 
-use overclosure::law::{LawParameters, LawProcedure, LawSpec, PressureLaw, ResolvedLaw, Separation};
+use overclosure::law::{
+    CurveParameters, Damping, DampingSpec, LawParameters, LawProcedure, LawSpec, PressureLaw, ResolvedLaw, Separation,
+};
 use variables::{Integers, Reals, TABLE_TEXT};
 
 use super::Backend;
@@ -14,8 +16,8 @@ use crate::variables::{Causality, Values, VariableTable};
 /// A law with its parameters.
 pub struct LawBackend {
     table: VariableTable,
-    /// The law of the last parameters that fitted together.
-    law: Option<ResolvedLaw>,
+    /// The law of the last parameters that fitted together, and its damping, if any.
+    law: Option<(ResolvedLaw, Option<Damping>)>,
     /// A parameter was set since the law was made.
     outdated: bool,
 }
@@ -46,10 +48,11 @@ impl Backend for LawBackend {
 
     fn refresh(&mut self, values: &mut Values) -> Result<(), Fault> {
         if self.outdated {
-            self.law = Some(law_of(values).map_err(Fault::Refused)?);
+            let law = law_of(values).map_err(Fault::Refused)?;
+            self.law = Some((law, damping_of(values).map_err(Fault::Refused)?));
         }
-        let law = self.law.as_ref().expect("a law was made just now, or before it was outdated");
-        evaluate(law, values);
+        let (law, damping) = self.law.as_ref().expect("a law was made just now, or before it was outdated");
+        evaluate(law, *damping, values);
         self.outdated = false;
         Ok(())
     }
@@ -87,31 +90,59 @@ fn law_of(values: &Values) -> Result<ResolvedLaw, String> {
     let pressure = values.reals[Reals::PRESSURE_AT_ZERO_CLEARANCE];
     let twin = values.integers[Integers::KIND_INTEGER];
     let kind = if twin == 0 { values.integers[Integers::KIND] } else { twin };
-    let mut procedure = LawProcedure::Standard;
+    let stiffness = values.reals[Reals::LAW_STIFFNESS];
+    let gap = values.reals[Reals::PENALTY_CLEARANCE];
+    let separation =
+        if values.integers[Integers::SEPARATION] == 0 { Separation::Allowed } else { Separation::Prevented };
+    // Where the manual's products differ, the one that has the combination is meant.
+    let explicit_if = |needed: bool| if needed { LawProcedure::Explicit } else { LawProcedure::Standard };
+    let mut procedure = explicit_if(separation == Separation::Prevented && kind <= 3);
     let parameters = match kind {
-        1 => LawParameters::Linear { stiffness: values.reals[Reals::LAW_STIFFNESS] },
+        1 => LawParameters::Linear { stiffness }.into(),
         2 => tabular(values)?,
         3 => {
             let limit = values.reals[Reals::STIFFNESS_MAX];
             let stiffness_max = (limit != 0.0).then_some(limit);
-            if stiffness_max.is_some() {
-                procedure = LawProcedure::Explicit;
-            }
+            procedure = explicit_if(stiffness_max.is_some());
             LawParameters::Exponential {
                 clearance_at_zero_pressure: clearance,
                 pressure_at_zero_clearance: pressure,
                 stiffness_max,
             }
+            .into()
         }
-        4 => LawParameters::CalculixExponential { clearance, pressure },
+        4 => LawParameters::CalculixExponential { clearance, pressure }.into(),
+        5 => CurveParameters::Penalty { stiffness, clearance: gap },
+        6 => CurveParameters::NonlinearPenalty {
+            stiffness_initial: values.reals[Reals::PENALTY_STIFFNESS_INITIAL],
+            stiffness_final: values.reals[Reals::PENALTY_STIFFNESS_FINAL],
+            lower: values.reals[Reals::PENALTY_LOWER],
+            upper: values.reals[Reals::PENALTY_UPPER],
+            clearance: gap,
+        },
+        7 => {
+            let multiplier = values.reals[Reals::PENALTY_MULTIPLIER];
+            CurveParameters::AugmentedLagrange { stiffness, multiplier, clearance: gap }
+        }
         other => return Err(format!("law.kind: there is no law number {other}")),
     };
-    LawSpec { parameters, separation: Separation::Allowed, procedure }
+    LawSpec { parameters, separation, procedure }
         .resolve()
         .map_err(|errors| format!("{} law: {errors}", LAW_KIND.items[kind as usize - 1].0))
 }
 
-fn tabular(values: &Values) -> Result<LawParameters, String> {
+/// The damping that the parameters describe; none when its coefficient is zero.
+fn damping_of(values: &Values) -> Result<Option<Damping>, String> {
+    let coefficient = values.reals[Reals::DAMPING_COEFFICIENT_MAX];
+    if coefficient == 0.0 {
+        return Ok(None);
+    }
+    let (clearance, fraction) = (values.reals[Reals::DAMPING_CLEARANCE], values.reals[Reals::DAMPING_FRACTION]);
+    let spec = DampingSpec { coefficient, clearance, fraction };
+    spec.resolve().map(Some).map_err(|errors| format!("damping: {errors}"))
+}
+
+fn tabular(values: &Values) -> Result<CurveParameters, String> {
     let text = values.strings[TABLE_TEXT].trim();
     if !text.is_empty() {
         return LawSpec::parse("tabular", &[("table", text)])
@@ -121,22 +152,35 @@ fn tabular(values: &Values) -> Result<LawParameters, String> {
     let points = values.integers[Integers::TABLE_N] as usize;
     let column = |from: usize| values.reals[from..from + points].iter().copied();
     let points = column(Reals::TABLE_PRESSURE).zip(column(Reals::TABLE_OVERCLOSURE)).collect();
-    Ok(LawParameters::Tabular { points })
+    Ok(LawParameters::Tabular { points }.into())
 }
 
-fn evaluate(law: &ResolvedLaw, values: &mut Values) {
+fn evaluate(law: &ResolvedLaw, damping: Option<Damping>, values: &mut Values) {
     let reals = &mut values.reals;
-    let area = reals[Reals::AREA];
-    let point = law.evaluate(reals[Reals::OVERCLOSURE]);
-    let force = finite(area * point.pressure);
+    let (area, speed) = (reals[Reals::AREA], reals[Reals::CLOSING_VELOCITY]);
+    let overclosure = reals[Reals::OVERCLOSURE];
+    let point = law.evaluate(overclosure);
+    let (coefficient, slope) = damping.map_or((0.0, 0.0), |damping| damping.at(overclosure));
+    // Where nothing is damped, zero times the speed has no sign.
+    let viscous = if coefficient == 0.0 { 0.0 } else { finite(coefficient * speed) };
+    let softening = if slope == 0.0 { 0.0 } else { finite(slope * speed) };
+    let force = finite(area * (point.pressure + viscous));
     reals[Reals::PRESSURE] = point.pressure;
     reals[Reals::FORCE] = force;
     reals[Reals::STIFFNESS] = point.stiffness;
-    reals[Reals::FORCE_STIFFNESS] = finite(area * point.stiffness);
+    reals[Reals::FORCE_STIFFNESS] = finite(area * (point.stiffness + softening));
     reals[Reals::ENERGY] = point.energy;
     reals[Reals::STORED_ENERGY] = finite(area * point.energy);
-    reals[Reals::POWER] = finite(force * reals[Reals::CLOSING_VELOCITY]);
-    values.integers[Integers::STATUS] = i32::from(point.pressure != 0.0);
+    reals[Reals::POWER] = finite(force * speed);
+    reals[Reals::VISCOUS_PRESSURE] = viscous;
+    reals[Reals::DAMPING_COEFFICIENT] = coefficient;
+    reals[Reals::FORCE_DAMPING] = finite(area * coefficient);
+    reals[Reals::DISSIPATED_POWER] = finite(finite(area * viscous) * speed);
+    values.integers[Integers::STATUS] = match (point.pressure != 0.0, viscous != 0.0) {
+        (true, _) => 1,
+        (false, true) => 2,
+        (false, false) => 0,
+    };
 }
 
 /// Saturated like the laws themselves: no output is ever infinite.
@@ -209,11 +253,59 @@ mod tests {
     }
 
     #[test]
+    fn damping_adds_to_the_force_and_acts_before_contact() {
+        let at = |overclosure: f64, speed: f64| {
+            outputs(|values| {
+                values.reals[Reals::AREA] = 2.0;
+                values.reals[Reals::LAW_STIFFNESS] = 250.0;
+                values.reals[Reals::DAMPING_COEFFICIENT_MAX] = 8.0;
+                values.reals[Reals::DAMPING_CLEARANCE] = 0.5;
+                values.reals[Reals::DAMPING_FRACTION] = 0.5;
+                values.reals[Reals::OVERCLOSURE] = overclosure;
+                values.reals[Reals::CLOSING_VELOCITY] = speed;
+            })
+            .expect("a law")
+        };
+        let values = at(0.06, 0.5);
+        assert_eq!(values.reals[Reals::PRESSURE], 15.0);
+        assert_eq!(values.reals[Reals::VISCOUS_PRESSURE], 4.0);
+        assert_eq!(values.reals[Reals::FORCE], 38.0);
+        assert_eq!(values.reals[Reals::DISSIPATED_POWER], 4.0);
+        assert_eq!(values.reals[Reals::POWER], 19.0);
+        assert_eq!(values.integers[Integers::STATUS], 1);
+        // Half way down the ramp, opening: suction.
+        let values = at(-0.375, -0.5);
+        assert_eq!(values.reals[Reals::FORCE], -4.0);
+        assert_eq!(values.reals[Reals::FORCE_STIFFNESS], 2.0 * 32.0 * -0.5);
+        assert_eq!(values.reals[Reals::FORCE_DAMPING], 8.0);
+        assert_eq!(values.integers[Integers::STATUS], 2);
+        assert_eq!(at(-0.375, 0.0).integers[Integers::STATUS], 0);
+    }
+
+    #[test]
+    fn tension_needs_a_law_that_has_one() {
+        let prevented = |kind: i32| {
+            outputs(|values| {
+                values.integers[Integers::KIND] = kind;
+                values.integers[Integers::SEPARATION] = 1;
+                values.reals[Reals::OVERCLOSURE] = -1e-5;
+            })
+        };
+        assert_eq!(prevented(1).expect("explicit").reals[Reals::PRESSURE], -1e4);
+        assert_eq!(prevented(5).expect("a penalty").reals[Reals::PRESSURE], -1e4);
+        for kind in [3, 4] {
+            let error = prevented(kind).expect_err("no tension").to_string();
+            assert!(error.contains("exponential"), "{error}");
+        }
+    }
+
+    #[test]
     fn outputs_stay_finite_at_the_end_of_the_range() {
         let values = outputs(|values| {
             values.reals[Reals::AREA] = 1e10;
             values.reals[Reals::OVERCLOSURE] = f64::MAX;
             values.reals[Reals::CLOSING_VELOCITY] = -1e10;
+            values.reals[Reals::DAMPING_COEFFICIENT_MAX] = 1e300;
         })
         .expect("a law");
         assert!(values.reals.iter().all(|value| value.is_finite()));

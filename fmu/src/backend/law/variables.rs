@@ -14,6 +14,9 @@ pub static LAW_KIND: EnumerationType = EnumerationType {
         ("tabular", "piecewise linear"),
         ("exponential", "exponential curve of the Abaqus manual"),
         ("calculix_exponential", "exponential curve of CalculiX"),
+        ("penalty", "straight penalty for hard contact"),
+        ("nonlinear_penalty", "penalty for hard contact that stiffens"),
+        ("augmented_lagrange", "straight penalty with the multiplier of an augmentation"),
     ],
 };
 
@@ -33,13 +36,26 @@ impl Reals {
     pub const ENERGY: usize = 6;
     pub const STORED_ENERGY: usize = 7;
     pub const POWER: usize = 8;
-    pub const AREA: usize = 9;
-    pub const LAW_STIFFNESS: usize = 10;
-    pub const CLEARANCE_AT_ZERO_PRESSURE: usize = 11;
-    pub const PRESSURE_AT_ZERO_CLEARANCE: usize = 12;
-    pub const STIFFNESS_MAX: usize = 13;
+    pub const VISCOUS_PRESSURE: usize = 9;
+    pub const DAMPING_COEFFICIENT: usize = 10;
+    pub const FORCE_DAMPING: usize = 11;
+    pub const DISSIPATED_POWER: usize = 12;
+    pub const AREA: usize = 13;
+    pub const LAW_STIFFNESS: usize = 14;
+    pub const CLEARANCE_AT_ZERO_PRESSURE: usize = 15;
+    pub const PRESSURE_AT_ZERO_CLEARANCE: usize = 16;
+    pub const STIFFNESS_MAX: usize = 17;
+    pub const PENALTY_CLEARANCE: usize = 18;
+    pub const PENALTY_MULTIPLIER: usize = 19;
+    pub const PENALTY_STIFFNESS_INITIAL: usize = 20;
+    pub const PENALTY_STIFFNESS_FINAL: usize = 21;
+    pub const PENALTY_LOWER: usize = 22;
+    pub const PENALTY_UPPER: usize = 23;
+    pub const DAMPING_COEFFICIENT_MAX: usize = 24;
+    pub const DAMPING_CLEARANCE: usize = 25;
+    pub const DAMPING_FRACTION: usize = 26;
     /// Followed by the other pressures of the table, then by the overclosures.
-    pub const TABLE_PRESSURE: usize = 14;
+    pub const TABLE_PRESSURE: usize = 27;
     pub const TABLE_OVERCLOSURE: usize = Self::TABLE_PRESSURE + TABLE_POINTS_MAX;
 }
 
@@ -54,20 +70,42 @@ impl Integers {
     pub const KIND: usize = 1;
     pub const KIND_INTEGER: usize = 2;
     pub const TABLE_N: usize = 3;
+    pub const SEPARATION: usize = 4;
 }
 
 /// Position of `table.text` among the String values.
 pub const TABLE_TEXT: usize = 0;
 
-/// Outputs that follow from the overclosure alone, and the one that needs the velocity too.
-const DESCRIPTIONS: [(&str, &str, &str); 7] = [
-    ("pressure", "Pa", "Contact pressure, positive in compression"),
-    ("force", "N", "Contact force: pressure times area, pushes the bodies apart"),
+/// The Real outputs: name, unit, description.
+const DESCRIPTIONS: [(&str, &str, &str); 11] = [
+    ("pressure", "Pa", "Contact pressure of the law, positive in compression"),
+    ("force", "N", "Contact force, pushes the bodies apart: pressure and viscous_pressure times area"),
     ("stiffness", "Pa/m", "Slope of the pressure with respect to the overclosure"),
     ("force_stiffness", "N/m", "Slope of the force with respect to the overclosure"),
     ("energy", "J/m2", "Integral of the pressure from separation up to the overclosure"),
     ("stored_energy", "J", "Energy stored in the contact: energy times area"),
     ("power", "W", "Power that the contact takes from the bodies: force times closing velocity"),
+    (
+        "viscous_pressure",
+        "Pa",
+        "Pressure of the contact damping: coefficient times closing velocity; negative is suction",
+    ),
+    ("damping_coefficient", "Pa.s/m", "Coefficient of the contact damping at the overclosure"),
+    ("force_damping", "N.s/m", "Slope of the force with respect to the closing velocity"),
+    ("dissipated_power", "W", "Power that the contact damping dissipates; never negative"),
+];
+
+/// Parameters of the penalties and of contact damping: name, start, unit, minimum, description.
+const OTHER_PARAMETERS: [(&str, f64, &str, Option<f64>, &str); 9] = [
+    ("penalty.clearance", 0.0, "m", Some(0.0), "Penalties: clearance c0 at which the pressure begins"),
+    ("penalty.multiplier", 0.0, "Pa", None, "Augmented Lagrange: multiplier; negative only when law.separation is 1"),
+    ("penalty.stiffness_initial", 1e8, "Pa/m", Some(0.0), "Nonlinear penalty: slope Ki up to penalty.lower; positive"),
+    ("penalty.stiffness_final", 1e10, "Pa/m", Some(0.0), "Nonlinear penalty: slope Kf beyond penalty.upper"),
+    ("penalty.lower", 1e-5, "m", Some(0.0), "Nonlinear penalty: overclosure d at which the slope begins to rise"),
+    ("penalty.upper", 3e-5, "m", Some(0.0), "Nonlinear penalty: overclosure e at which the slope has risen; beyond d"),
+    ("damping.coefficient", 0.0, "Pa.s/m", Some(0.0), "Contact damping: coefficient mu0 in contact; 0 for none"),
+    ("damping.clearance", 1e-4, "m", Some(0.0), "Contact damping: clearance c0 at which it has vanished; positive"),
+    ("damping.fraction", 0.0, "1", Some(0.0), "Contact damping: part eta of c0 without decrease, below 1"),
 ];
 
 /// All variables, in the order of their value references.
@@ -88,7 +126,14 @@ pub fn variables() -> Vec<Variable> {
     }
     let parameter = Causality::TunableParameter;
     list.push(real("area", parameter, 1.0, "m2", Some(0.0), "Area on which the pressure acts; positive"));
-    list.push(real("law.stiffness", parameter, 1e9, "Pa/m", Some(0.0), "Linear law: slope; positive"));
+    list.push(real(
+        "law.stiffness",
+        parameter,
+        1e9,
+        "Pa/m",
+        Some(0.0),
+        "Linear law, penalty, augmented Lagrange: slope; positive",
+    ));
     list.push(real(
         "law.clearance_at_zero_pressure",
         parameter,
@@ -113,6 +158,9 @@ pub fn variables() -> Vec<Variable> {
         Some(0.0),
         "Exponential law of Abaqus/Explicit: limit of the slope; 0 for none",
     ));
+    for (name, start, unit, min, description) in OTHER_PARAMETERS {
+        list.push(real(name, parameter, start, unit, min, description));
+    }
     for (column, unit, second, what) in [("pressure", "Pa", 1e6, "pressure"), ("overclosure", "m", 1e-3, "overclosure")]
     {
         for row in 1..=TABLE_POINTS_MAX {
@@ -132,9 +180,9 @@ pub fn variables() -> Vec<Variable> {
     };
     list.push(discrete(
         "status",
-        "0 open: no pressure is transmitted; 1 closed",
+        "0 open: no pressure is transmitted; 1 closed; 2 open with a viscous pressure (VD)",
         Causality::Output,
-        Kind::Integer { start: 0, min: 0, max: 1 },
+        Kind::Integer { start: 0, min: 0, max: 2 },
     ));
     list.push(discrete("law.kind", "Which law", parameter, Kind::Enumeration { start: 1, definition: &LAW_KIND }));
     list.push(discrete(
@@ -150,6 +198,12 @@ pub fn variables() -> Vec<Variable> {
         Kind::Integer { start: 2, min: 2, max: TABLE_POINTS_MAX as i32 },
     ));
     list.push(discrete(
+        "law.separation",
+        "0 allowed; 1 prevented: the surfaces have met before, and the law goes on into tension",
+        parameter,
+        Kind::Integer { start: 0, min: 0, max: 1 },
+    ));
+    list.push(discrete(
         "table.text",
         "Tabular law: the table as p1:h1,p2:h2,... [Pa, m]; when it is not empty, the arrays do not count",
         parameter,
@@ -159,6 +213,10 @@ pub fn variables() -> Vec<Variable> {
     list
 }
 
+/// Outputs that follow from the closing velocity too, where there is contact damping.
+const WITH_VELOCITY: [&str; 6] =
+    ["force", "force_stiffness", "power", "viscous_pressure", "dissipated_power", "status"];
+
 /// Which outputs follow which variables.
 fn connect(list: &mut [Variable]) {
     let settable: Vec<usize> = (0..list.len())
@@ -167,7 +225,7 @@ fn connect(list: &mut [Variable]) {
     for variable in list.iter_mut().filter(|variable| variable.causality == Causality::Output) {
         variable.feed_through.push(Reals::OVERCLOSURE);
         variable.initial_dependencies.clone_from(&settable);
-        if variable.name == "power" {
+        if WITH_VELOCITY.contains(&variable.name.as_str()) {
             variable.feed_through.push(Reals::CLOSING_VELOCITY);
             variable.initial_dependencies.insert(1, Reals::CLOSING_VELOCITY);
         }
@@ -208,6 +266,19 @@ mod tests {
             ("energy", Reals::ENERGY),
             ("stored_energy", Reals::STORED_ENERGY),
             ("power", Reals::POWER),
+            ("viscous_pressure", Reals::VISCOUS_PRESSURE),
+            ("damping_coefficient", Reals::DAMPING_COEFFICIENT),
+            ("force_damping", Reals::FORCE_DAMPING),
+            ("dissipated_power", Reals::DISSIPATED_POWER),
+            ("penalty.clearance", Reals::PENALTY_CLEARANCE),
+            ("penalty.multiplier", Reals::PENALTY_MULTIPLIER),
+            ("penalty.stiffness_initial", Reals::PENALTY_STIFFNESS_INITIAL),
+            ("penalty.stiffness_final", Reals::PENALTY_STIFFNESS_FINAL),
+            ("penalty.lower", Reals::PENALTY_LOWER),
+            ("penalty.upper", Reals::PENALTY_UPPER),
+            ("damping.coefficient", Reals::DAMPING_COEFFICIENT_MAX),
+            ("damping.clearance", Reals::DAMPING_CLEARANCE),
+            ("damping.fraction", Reals::DAMPING_FRACTION),
             ("area", Reals::AREA),
             ("law.stiffness", Reals::LAW_STIFFNESS),
             ("law.clearance_at_zero_pressure", Reals::CLEARANCE_AT_ZERO_PRESSURE),
@@ -223,6 +294,7 @@ mod tests {
             ("law.kind", Integers::KIND),
             ("law.kind_integer", Integers::KIND_INTEGER),
             ("table.n", Integers::TABLE_N),
+            ("law.separation", Integers::SEPARATION),
         ] {
             assert_eq!(slot(name), Slot::Integer(at), "{name}");
         }
