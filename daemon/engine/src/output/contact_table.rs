@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::file::{OutputError, TextFile};
 use super::number::{push_name, push_number};
-use crate::simulation::{ContactPointResult, ContactStatus, IncrementReport, PreparedModel};
+use crate::simulation::{ContactPointResult, IncrementReport, PreparedModel};
 
 const HEADER: &str = "step,increment,time,pair,node,status,area,COPEN,CPRESS,CSHEAR1,CSHEAR2,CSLIP1,CSLIP2\n";
 
@@ -35,7 +35,7 @@ impl ContactTable {
             push_name(&mut text, &model.pairs[point.pair as usize].name);
             let label = model.mesh.node_labels[point.node.index()];
             // Writing to a string does not fail.
-            let _ = write!(text, ",{label},{}", status_code(result.status));
+            let _ = write!(text, ",{label},{}", result.status.code());
             let ContactPointResult { status: _, clearance, pressure, viscous: _, shear, viscous_shear: _, slip } =
                 *result;
             for value in [point.area, clearance, pressure, shear[0], shear[1], slip[0], slip[1]] {
@@ -44,16 +44,5 @@ impl ContactTable {
             text.push('\n');
         }
         self.file.append(&text)
-    }
-}
-
-/// The code of printed tables.
-pub(super) fn status_code(status: ContactStatus) -> &'static str {
-    match status {
-        ContactStatus::Open => "OP",
-        ContactStatus::Closed => "CL",
-        ContactStatus::Sticking => "ST",
-        ContactStatus::Slipping => "SL",
-        ContactStatus::Viscous => "VD",
     }
 }

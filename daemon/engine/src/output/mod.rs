@@ -3,7 +3,9 @@
 //! Every file is flushed at the end of each increment, so that a run that is killed keeps what it had. The first failure to write
 //! ends the writing; [`ResultWriter::finish`] reports it with the name of the file.
 
+mod components;
 mod contact_table;
+mod fil_record;
 mod file;
 mod frames;
 mod history_table;
@@ -12,9 +14,14 @@ mod number;
 mod plan;
 mod port_table;
 mod printed;
+mod printed_contact;
+mod printed_elements;
 mod printed_table;
 mod report;
+mod results_file;
+mod results_header;
 mod snapshots;
+mod totals;
 mod vtu;
 
 #[cfg(test)]
@@ -39,6 +46,7 @@ use node_table::NodeTable;
 use plan::{Moment, Plan};
 use port_table::PortTable;
 use printed::Printed;
+use results_file::{Increment, ResultsFile};
 use snapshots::Snapshots;
 
 /// Writes the results of a job into a directory, increment by increment.
@@ -53,6 +61,7 @@ pub struct ResultWriter {
     contact: ContactTable,
     nodes: NodeTable,
     printed: Printed,
+    results: ResultsFile,
     frames: Frames,
     snapshots: Snapshots,
     /// The last increment, if the requests of the deck did not make it a written one in every respect.
@@ -89,6 +98,7 @@ impl ResultWriter {
             contact: ContactTable::create(directory, job)?,
             nodes: NodeTable::create(directory, job)?,
             printed: Printed::create(directory, job, &prepared)?,
+            results: ResultsFile::create(directory, job, prepared.model())?,
             frames: Frames::create(directory, job, prepared.model())?,
             snapshots: Snapshots::create(directory, job, options.snapshots, options.restarted)?,
             prepared,
@@ -138,7 +148,7 @@ impl ResultWriter {
         let fields = plan.needs_solution().then(|| {
             let solution = simulation.recover();
             let stress = if plan.needs_stress() { simulation.nodal_stress(&solution) } else { Vec::new() };
-            let axial = if plan.element_prints.is_empty() { Vec::new() } else { axial(simulation, &solution) };
+            let axial = if plan.needs_elements() { axial(simulation, &solution) } else { Vec::new() };
             NodalFields { solution, stress, axial }
         });
         if let Some(fields) = &fields {
@@ -148,6 +158,9 @@ impl ResultWriter {
             }
         }
         self.printed.write(&prepared, increment, &plan, &history, contact, fields.as_ref())?;
+        let said =
+            Increment { prepared: &prepared, report: increment, history: &history, contact, fields: fields.as_ref() };
+        self.results.write(&said, &plan)?;
         self.snapshots.write(step, increment, moment, simulation)
     }
 }

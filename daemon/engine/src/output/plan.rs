@@ -28,6 +28,12 @@ pub(super) struct Plan<'a> {
     pub element_prints: Vec<&'a ElementRequest>,
     /// Printed contact tables.
     pub contact_prints: Vec<&'a ContactRequest>,
+    /// Nodal records of the results file.
+    pub node_files: Vec<&'a NodeRequest>,
+    /// Element records of the results file.
+    pub element_files: Vec<&'a ElementRequest>,
+    /// Contact records of the results file.
+    pub contact_files: Vec<&'a ContactRequest>,
     /// Whether the increment ends its step, or the run.
     pub end: bool,
 }
@@ -46,7 +52,7 @@ impl<'a> Plan<'a> {
             .filter(|(target, _)| matches!(target, OutputTarget::Field | OutputTarget::File))
             .map(|(_, frequency)| frequency)
             .collect();
-        let contacts: Vec<u32> = requests.contacts.iter().map(|r| r.frequency).collect();
+        let contact_frequencies: Vec<u32> = requests.contacts.iter().map(|r| r.frequency).collect();
         let mut node_rows = Vec::new();
         for request in requests.nodes.iter().filter(|r| due(r.frequency) && r.totals != Totals::Only) {
             if let Some(set) = request.set
@@ -55,37 +61,39 @@ impl<'a> Plan<'a> {
                 node_rows.push(set);
             }
         }
+        let nodes = |to| requests.nodes.iter().filter(|r| r.target == to && due(r.frequency)).collect();
+        let elements = |to| requests.elements.iter().filter(|r| r.target == to && due(r.frequency)).collect();
+        let contacts = |to| requests.contacts.iter().filter(|r| r.target == to && due(r.frequency)).collect();
         Self {
-            contact_rows: any_due(&contacts, increment, moment),
+            contact_rows: any_due(&contact_frequencies, increment, moment),
             frame: any_due(&fields, increment, moment),
             node_rows,
-            node_prints: requests
-                .nodes
-                .iter()
-                .filter(|r| r.target == OutputTarget::Print && due(r.frequency))
-                .collect(),
-            element_prints: requests
-                .elements
-                .iter()
-                .filter(|r| r.target == OutputTarget::Print && due(r.frequency))
-                .collect(),
-            contact_prints: requests
-                .contacts
-                .iter()
-                .filter(|r| r.target == OutputTarget::Print && due(r.frequency))
-                .collect(),
+            node_prints: nodes(OutputTarget::Print),
+            element_prints: elements(OutputTarget::Print),
+            contact_prints: contacts(OutputTarget::Print),
+            node_files: nodes(OutputTarget::File),
+            element_files: elements(OutputTarget::File),
+            contact_files: contacts(OutputTarget::File),
             end: moment != Moment::Within,
         }
     }
 
     /// Whether nodal values are needed.
     pub(super) fn needs_solution(&self) -> bool {
-        self.needs_stress() || !self.node_rows.is_empty() || self.node_prints.iter().any(|r| r.totals != Totals::Only)
+        self.needs_stress()
+            || !self.node_rows.is_empty()
+            || !self.node_files.is_empty()
+            || self.node_prints.iter().any(|r| r.totals != Totals::Only)
+    }
+
+    /// Whether values of single elements are needed.
+    pub(super) fn needs_elements(&self) -> bool {
+        !self.element_prints.is_empty() || !self.element_files.is_empty()
     }
 
     /// Whether stresses are needed.
     pub(super) fn needs_stress(&self) -> bool {
-        self.frame || !self.element_prints.is_empty()
+        self.frame || self.needs_elements()
     }
 }
 

@@ -3,15 +3,15 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::contact_table::status_code;
 use super::file::{OutputError, TextFile};
 use super::number::printed;
 use super::plan::Plan;
+use super::printed_contact::contact_tables;
+use super::printed_elements::element_tables;
 use super::printed_table::{Entity, Table};
+use super::totals::Resultants;
 use super::{NodalFields, period, step_of};
-use crate::model::{
-    ElementId, ElementKind, ElementRequest, Model, NodeId, NodeRequest, Procedure, Step, SurfaceId, Totals,
-};
+use crate::model::{Model, NodeId, NodeRequest, Procedure, Step, Totals};
 use crate::simulation::{ContactPointResult, HistoryRow, IncrementReport, PreparedModel};
 
 /// Writes the summary of an increment and the tables that are due.
@@ -57,12 +57,16 @@ impl Printed {
             summary(&mut text, step, increment);
         }
         if !plan.contact_prints.is_empty() {
-            contact_tables(&mut text, prepared, history, contact);
+            text.push_str("\n\n                              C O N T A C T   O U T P U T\n");
+            let resultants = Resultants::of_pairs(prepared, &history.pairs, contact);
+            for request in &plan.contact_prints {
+                contact_tables(&mut text, prepared, request, &resultants, contact);
+            }
         }
         if let Some(fields) = fields.filter(|_| !plan.element_prints.is_empty()) {
             text.push_str("\n\n                              E L E M E N T   O U T P U T\n");
             for request in &plan.element_prints {
-                stress_tables(&mut text, model, request, fields);
+                element_tables(&mut text, prepared, request, fields, contact);
             }
         }
         if !plan.node_prints.is_empty() {
@@ -109,7 +113,7 @@ impl Printed {
                 for node in nodes {
                     table.row(model.mesh.node_labels[node.index()], None, &values[node.index()]);
                 }
-                table.finish(text);
+                table.finish(text, request.summary, false);
             }
             if request.totals != Totals::No
                 && let Some(total) = totals
@@ -163,75 +167,4 @@ fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
     let fraction = increment.step_time / period(&step.procedure);
     pair(text, "TIME INCREMENT COMPLETED", increment.increment_size, "FRACTION OF STEP COMPLETED", fraction);
     pair(text, "STEP TIME COMPLETED", increment.step_time, "TOTAL TIME COMPLETED", increment.time);
-}
-
-fn contact_tables(text: &mut String, prepared: &PreparedModel, history: &HistoryRow, contact: &[ContactPointResult]) {
-    let model = prepared.model();
-    text.push_str("\n\n                              C O N T A C T   O U T P U T\n");
-    let columns = ["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"];
-    for (i, pair) in model.pairs.iter().enumerate() {
-        let name = |surface: SurfaceId| &model.mesh.surfaces[surface.index()].name;
-        let heading = match pair.surfaces() {
-            Some(surfaces) => format!(
-                "THE FOLLOWING TABLE IS PRINTED FOR ALL SECONDARY NODES IN CONTACT PAIR ({},{})",
-                name(surfaces.secondary),
-                name(surfaces.primary)
-            ),
-            None => format!("THE FOLLOWING TABLE IS PRINTED FOR ALL ELEMENTS IN ELEMENT SET {}", pair.name),
-        };
-        let mut table = Table::new(&heading, Entity::Node, Some("STATUS"), &columns);
-        for (point, result) in prepared.contact_points().iter().zip(contact).filter(|(p, _)| p.pair as usize == i) {
-            let ContactPointResult { status, clearance, pressure, shear, slip, .. } = *result;
-            let values = [pressure, shear[0], shear[1], clearance, slip[0], slip[1]];
-            table.row(model.mesh.node_labels[point.node.index()], Some(status_code(status)), &values);
-        }
-        table.finish(text);
-        if let Some(totals) = history.pairs.get(i) {
-            let _ = writeln!(text, "\n   TOTAL FORCE DUE TO CONTACT PRESSURE AND AREA IN CONTACT\n");
-            let names = ["CFN1", "CFN2", "CFN3", "CFNM", "CAREA"];
-            let _ = writeln!(text, "            {}", names.map(|n| format!("{n:>15}")).concat());
-            let [x, y, z] = totals.force;
-            let values = [x, y, z, totals.force_magnitude, totals.area];
-            let _ = writeln!(text, "      TOTAL {}", values.map(printed).concat());
-        }
-    }
-}
-
-/// Stresses at the nodes of the solids of a request, then the values of its bars and springs.
-fn stress_tables(text: &mut String, model: &Model, request: &ElementRequest, fields: &NodalFields) {
-    if !request.variables.iter().any(|v| v == "S") {
-        return;
-    }
-    let mesh = &model.mesh;
-    let set = request.set.map(|s| &mesh.element_sets[s.index()]);
-    let whom = set.map_or_else(|| "ALL ELEMENTS".to_owned(), |set| format!("ELEMENT SET {}", set.name));
-    let is_member = |element: ElementId| set.is_none_or(|set| set.elements.binary_search(&element).is_ok());
-    let kinds = (0..).map(ElementId).zip(mesh.elements.iter());
-    let solids = kinds.filter(|(element, (kind, _))| kind.is_solid() && is_member(*element));
-    let mut nodes: Vec<NodeId> = solids.flat_map(|(_, (_, nodes))| nodes).copied().collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    if !nodes.is_empty() {
-        let columns = ["S11", "S22", "S33", "S12", "S13", "S23"];
-        let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR THE NODES OF {whom} (STRESSES AVERAGED AT NODES)");
-        let mut table = Table::new(&heading, Entity::Node, None, &columns);
-        for node in nodes {
-            table.row(mesh.node_labels[node.index()], None, &fields.stress[node.index()]);
-        }
-        table.finish(text);
-    }
-    for (bars, what, value) in [(true, "BARS", "STRESS"), (false, "SPRINGS", "FORCE")] {
-        let is_wanted = |element: ElementId| (mesh.elements.kind(element.index()) == ElementKind::T3D2) == bars;
-        let rows: Vec<_> = fields.axial.iter().filter(|(e, _)| is_wanted(*e) && is_member(*e)).collect();
-        if rows.is_empty() {
-            continue;
-        }
-        let heading =
-            format!("THE FOLLOWING TABLE IS PRINTED FOR THE {what} OF {whom} (S11: {value}, POSITIVE IN TENSION)");
-        let mut table = Table::new(&heading, Entity::Element, Some("PT"), &["S11"]);
-        for &&(element, value) in &rows {
-            table.row(mesh.element_labels[element.index()], Some("1"), &[value]);
-        }
-        table.finish(text);
-    }
 }

@@ -28,6 +28,9 @@ pub(super) struct Table {
     status: bool,
     /// Per column: (least, its node), (greatest, its node).
     extremes: Vec<[(f64, u32); 2]>,
+    /// Per column: the sum of its rows.
+    sums: Vec<f64>,
+    rows: usize,
 }
 
 impl Table {
@@ -42,7 +45,7 @@ impl Table {
             let _ = write!(text, "{column:>15}");
         }
         text.push_str("\n\n");
-        Self { text, entity, status: status.is_some(), extremes: Vec::new() }
+        Self { text, entity, status: status.is_some(), extremes: Vec::new(), sums: vec![0.0; columns.len()], rows: 0 }
     }
 
     /// Adds the row of a node or element.
@@ -54,8 +57,9 @@ impl Table {
         if self.extremes.is_empty() {
             self.extremes = values.iter().map(|&v| [(v, label); 2]).collect();
         }
-        for (&value, [least, greatest]) in values.iter().zip(&mut self.extremes) {
+        for ((&value, [least, greatest]), sum) in values.iter().zip(&mut self.extremes).zip(&mut self.sums) {
             self.text.push_str(&printed(value));
+            *sum += value;
             if value < least.0 {
                 *least = (value, label);
             }
@@ -64,12 +68,18 @@ impl Table {
             }
         }
         self.text.push('\n');
+        self.rows += 1;
     }
 
-    /// Appends the table and its extremes.
-    pub(super) fn finish(mut self, text: &mut String) {
+    /// Appends the table: with its extremes if a summary is wanted, with the sums of its columns if totals are.
+    pub(super) fn finish(mut self, text: &mut String, summary: bool, totals: bool) {
+        if self.rows == 0 {
+            self.text.push_str("   THERE ARE NO ENTRIES IN THIS TABLE\n");
+            text.push_str(&self.text);
+            return;
+        }
         let gap = if self.status { "       " } else { "" };
-        for (which, name) in [(1, "MAXIMUM"), (0, "MINIMUM")] {
+        for (which, name) in [(1, "MAXIMUM"), (0, "MINIMUM")].into_iter().filter(|_| summary) {
             let _ = write!(self.text, "\n {name:>11}{gap}");
             for column in &self.extremes {
                 self.text.push_str(&printed(column[which].0));
@@ -79,7 +89,15 @@ impl Table {
                 let _ = write!(self.text, "{:>15}", column[which].1);
             }
         }
-        self.text.push('\n');
+        if totals {
+            let _ = write!(self.text, "\n {:>11}{gap}", "TOTAL");
+            for &sum in &self.sums {
+                self.text.push_str(&printed(sum));
+            }
+        }
+        if summary || totals {
+            self.text.push('\n');
+        }
         text.push_str(&self.text);
     }
 }
