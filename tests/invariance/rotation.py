@@ -54,6 +54,11 @@ class Turned:
                 if line[1].upper() == "GRAV":
                     direction = self.rotation @ [float(x) for x in line[3:6]]
                     line[3:6] = [repr(float(x)) for x in direction]
+        elif card.keyword == "*GAP":
+            for line in card.data:
+                if any(line[1:4]):
+                    direction = self.rotation @ [float(x or 0.0) for x in line[1:4]]
+                    line[1:4] = [repr(float(x)) for x in direction]
         elif card.keyword == "*EQUATION":
             card = self.equation(card)
         elif card.keyword == "*ELEMENT" and card.parameters["TYPE"].upper() in ("SPRING1", "SPRING2"):

@@ -48,15 +48,28 @@ def converted(cards, units, sets, dialect):
             columns(card.data, {0: units.scale(2)})
         elif name == "*SURFACE BEHAVIOR":
             if interaction is None:
-                raise ValueError("*SURFACE BEHAVIOR without *SURFACE INTERACTION")
-            law = card.parameters["PRESSURE-OVERCLOSURE"].upper()
-            by_law = {
-                "HARD": {},
-                "LINEAR": {0: stiffness},
-                "TABULAR": {0: pressure, 1: units.length},
-                "EXPONENTIAL": {0: units.length, 1: pressure},
-            }
-            columns(data, by_law[law])
+                raise ValueError("*SURFACE BEHAVIOR without *SURFACE INTERACTION or *GAP")
+            columns(data, law_factors(card.parameters, units))
+        elif name == "*CONTACT DAMPING":
+            columns(data, {0: stiffness, 1: units.length})
+        elif name == "*CONTACT CONTROLS":
+            for parameter, factor in CONTROLS.items():
+                if parameter in card.parameters:
+                    card.parameters[parameter] = number(card.parameters[parameter], units.scale(*factor))
+            columns(data, {0: stiffness, 2: units.length})
+        elif name == "*CONTACT INTERFERENCE":
+            columns(data, {2: units.length})
+        elif name == "*CLEARANCE":
+            if "VALUE" in card.parameters:
+                card.parameters["VALUE"] = number(card.parameters["VALUE"], units.length)
+            columns(data, {1: units.length})
+        elif name == "*GAP":
+            interaction = card
+            # Without an area the element has the area one in the old units.
+            for line in data:
+                line.extend([""] * (5 - len(line)))
+                line[4] = line[4] or "1."
+            columns(data, {0: units.length, 4: units.scale(2)})
         elif name == "*SPRING":
             columns(data[-1:], {0: units.scale(-1, 1)})
         elif name == "*MASS":
@@ -66,6 +79,20 @@ def converted(cards, units, sets, dialect):
         elif name not in UNCHANGED:
             raise ValueError(f"the dimensions of {name} are not known here")
     return result
+
+
+def law_factors(parameters, units):
+    """Factors of the data columns of `*SURFACE BEHAVIOR`."""
+    pressure, stiffness = units.scale(-2, 1), units.scale(-3, 1)
+    if "AUGMENTED LAGRANGE" in parameters or "PENALTY" in parameters:
+        return {0: stiffness, 1: units.length}
+    by_law = {
+        "HARD": {},
+        "LINEAR": {0: stiffness},
+        "TABULAR": {0: pressure, 1: units.length},
+        "EXPONENTIAL": {0: units.length, 1: pressure},
+    }
+    return by_law[parameters.get("PRESSURE-OVERCLOSURE", "HARD").upper()]
 
 
 def columns(data, factors):
@@ -79,5 +106,7 @@ def columns(data, factors):
 UNCHANGED = {
     *("*HEADING", "*ELEMENT", "*NSET", "*ELSET", "*SURFACE", "*MATERIAL", "*SOLID SECTION", "*EQUATION", "*AMPLITUDE"),
     *("*CONTACT PAIR", "*STEP", "*STATIC", "*END STEP", "*NODE PRINT", "*NODE FILE", "*EL PRINT", "*EL FILE"),
-    *("*CONTACT PRINT", "*CONTACT FILE"),
+    *("*CONTACT PRINT", "*CONTACT FILE", "*FRICTION", "*CHANGE FRICTION", "*MODEL CHANGE"),
 }
+# Powers (length, force) of parameters of *CONTACT CONTROLS.
+CONTROLS = {"ABSOLUTE PENETRATION TOLERANCE": (1, 0), "UERRMX": (1, 0), "PERRMX": (-2, 1)}

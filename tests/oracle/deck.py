@@ -84,6 +84,11 @@ def surface_lines(name, faces):
 
 def text(deck):
     """The deck as Abaqus text; numbers with 17 digits."""
+    return "\n".join(model_lines(deck) + step_lines(deck)) + "\n"
+
+
+def model_lines(deck):
+    """Everything before the first supports."""
     lines = ["*HEADING", "random deck", "*NODE, NSET=NALL"]
     lines += [f"{i + 1}, {x!r}, {y!r}, {z!r}" for i, (x, y, z) in enumerate(deck.coordinates.tolist())]
     for index, members in enumerate(deck.bodies, 1):
@@ -108,7 +113,7 @@ def text(deck):
         ]
     for index, (element, face, _) in enumerate(deck.surface_pressures, 1):
         lines += surface_lines(f"PUSHED{index}", [(element, face)])
-    return "\n".join(lines + step_lines(deck)) + "\n"
+    return lines
 
 
 def connector_lines(deck):
