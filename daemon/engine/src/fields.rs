@@ -130,7 +130,7 @@ impl Simulation {
         match section {
             Connector::Bar { area } => vec![[force / area, 0.0, 0.0, 0.0, 0.0, 0.0]],
             Connector::Spring { .. } => vec![[force, 0.0, 0.0, 0.0, 0.0, 0.0]],
-            Connector::Mass { .. } => Vec::new(),
+            Connector::Mass { .. } | Connector::Inert => Vec::new(),
         }
     }
 

@@ -6,13 +6,13 @@ use rustc_hash::FxHashMap;
 
 use super::search::{PrimarySurface, Query};
 use super::underlying::{self, Underlying};
-use super::{adjust, node_areas};
+use super::{adjust, gap_points, node_areas};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
 use crate::element::{Coordinates, face};
 use crate::model::{
-    Dialect, ElementFace, FACE_NODES_MAX, FaceNodes, InteractionId, Mesh, Model, NodeId, SurfaceId, SurfaceKind,
-    SurfacePair,
+    Dialect, ElementFace, FACE_NODES_MAX, FaceNodes, InteractionId, Mesh, Model, NodeId, PairMembers, SurfaceId,
+    SurfaceKind, SurfacePair,
 };
 
 /// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
@@ -37,7 +37,7 @@ pub struct ContactPoint {
     pub weights: [f64; FACE_NODES_MAX],
     /// Initial clearance along the normal [length]; negative when the bodies overlap.
     pub clearance: f64,
-    /// Size of the primary face: square root of its area [length].
+    /// Size of the primary face: square root of its area [length]. Of a gap the distance over which its direction holds.
     pub face_size: f64,
     /// Characteristic length of the interface \[length\]: tolerances and automatic stiffnesses are parts of it.
     pub length: f64,
@@ -87,12 +87,13 @@ pub(super) fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -
 }
 
 /// Unit vector.
-pub(super) fn direction(v: [f64; 3]) -> [f64; 3] {
+pub fn direction(v: [f64; 3]) -> [f64; 3] {
     let length = norm(v);
     v.map(|x| x / length)
 }
 
-fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
+/// First the projection of the 1-axis (of the 3-axis where that is the normal), then the normal times it.
+pub(super) fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
     // Within 0.1 degree of the normal the 1-axis has no usable projection: take the 3-axis.
     let axis = if normal[0].abs() > 0.1f64.to_radians().cos() { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
     let along = dot(axis, normal);
@@ -181,7 +182,13 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
     let (mut points, mut warnings) = (Vec::new(), Vec::new());
     let underlying = Underlying::new(model);
     for (pair, index) in model.pairs.iter().zip(0u32..) {
-        let Some(surfaces) = pair.surfaces() else { continue };
+        let surfaces = match &pair.members {
+            PairMembers::Surfaces(surfaces) => surfaces,
+            PairMembers::Gaps(gaps) => {
+                points.extend(gap_points::points(&underlying, index, gaps));
+                continue;
+            }
+        };
         let SurfaceKind::Faces(faces) = &mesh.surfaces[surfaces.primary.index()].kind else {
             unreachable!("the deck reader admits element-based primary surfaces only")
         };

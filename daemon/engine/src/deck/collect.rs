@@ -81,12 +81,14 @@ fn join_continuations(source: &mut Source<'_>, mut header: Vec<u8>) -> io::Resul
 }
 
 /// Remedy for an element type that is not solved.
-const ELEMENT_TYPES: &str =
-    "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20, C3D20R, T3D2, SPRINGA, SPRING1, SPRING2 and MASS are solved";
+const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20, C3D20R, T3D2, SPRINGA, SPRING1, SPRING2, MASS, GAPUNI, GAPCYL, GAPSPHER, R3D3 and R3D4 are solved";
 
 /// Kind of a type in upper case, as Abaqus means it.
 fn element_kind(name: &str) -> Option<ElementKind> {
-    ElementKind::SOLIDS.into_iter().chain(ElementKind::CONNECTORS).find(|kind| kind.name() == name)
+    // GAPUNIT has a temperature too, which nothing here acts on.
+    let name = if name == "GAPUNIT" { "GAPUNI" } else { name };
+    let mut kinds = ElementKind::SOLIDS.into_iter().chain(ElementKind::CONNECTORS).chain(ElementKind::INERT);
+    kinds.find(|kind| kind.name() == name)
 }
 
 fn element_remedy(kind: ElementKind) -> String {

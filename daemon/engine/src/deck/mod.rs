@@ -4,6 +4,7 @@
 //! arrays as they come, so that the text is never held; the second builds the model from the cards, so that references
 //! may point forwards. Neither stops at a fault: every finding is in [`Reading::diagnostics`].
 
+mod body_table;
 mod build;
 mod card;
 mod collect;

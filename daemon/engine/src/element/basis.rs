@@ -31,7 +31,9 @@ pub fn evaluate(shape: ElementShape, natural: [f64; 3]) -> Basis {
         ElementShape::Wedge15 => super::wedge::quadratic(natural),
         ElementShape::Hexahedron8 => super::hexahedron::linear(natural),
         ElementShape::Hexahedron20 => super::hexahedron::quadratic(natural),
-        ElementShape::Line2 | ElementShape::Point1 => unreachable!("a connector has no shape functions"),
+        ElementShape::Line2 | ElementShape::Point1 | ElementShape::Triangle3 | ElementShape::Quadrilateral4 => {
+            unreachable!("only solids have shape functions")
+        }
     }
 }
 
@@ -51,7 +53,9 @@ pub fn node(shape: ElementShape, node: usize) -> [f64; 3] {
         ElementShape::Tetrahedron4 | ElementShape::Tetrahedron10 => &super::tetrahedron::CORNER,
         ElementShape::Wedge6 | ElementShape::Wedge15 => &super::wedge::CORNER,
         ElementShape::Hexahedron8 | ElementShape::Hexahedron20 => &super::brick::CORNER,
-        ElementShape::Line2 | ElementShape::Point1 => unreachable!("a connector has no natural coordinates"),
+        ElementShape::Line2 | ElementShape::Point1 | ElementShape::Triangle3 | ElementShape::Quadrilateral4 => {
+            unreachable!("only solids have natural coordinates")
+        }
     };
     match node.checked_sub(corners.len()) {
         None => corners[node],

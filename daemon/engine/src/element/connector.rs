@@ -3,14 +3,14 @@
 use super::Stiffness;
 use crate::model::{Connector, ElementKind};
 
-/// Stiffness along the elongation of a connector [force/length]; none for a mass.
+/// Stiffness along the elongation of a connector [force/length]; none for a mass and for what is inert.
 ///
 /// A bar has `E A / L`; `youngs_modulus` is that of its material.
 pub fn axial_stiffness(coordinates: &[[f64; 3]], section: Connector, youngs_modulus: f64) -> Option<f64> {
     match section {
         Connector::Bar { area } => Some(youngs_modulus * area / length(coordinates)),
         Connector::Spring { stiffness, .. } => Some(stiffness),
-        Connector::Mass { .. } => None,
+        Connector::Mass { .. } | Connector::Inert => None,
     }
 }
 
@@ -41,7 +41,7 @@ pub fn length(coordinates: &[[f64; 3]]) -> f64 {
     (0..3).map(|d| (coordinates[1][d] - coordinates[0][d]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Stiffness matrix of a connector, into `out`; zero for a mass.
+/// Stiffness matrix of a connector, into `out`; zero for a mass and for what is inert.
 pub fn stiffness(
     kind: ElementKind,
     coordinates: &[[f64; 3]],

@@ -43,6 +43,16 @@ pub enum ElementKind {
     Spring2,
     /// Point mass.
     Mass,
+    /// Gap between two nodes along a fixed direction.
+    GapUni,
+    /// Gap between two nodes in their distance from each other normal to an axis.
+    GapCyl,
+    /// Gap between two nodes in their distance.
+    GapSpher,
+    /// Triangular facet of a rigid body.
+    R3D3,
+    /// Quadrilateral facet of a rigid body.
+    R3D4,
 }
 
 /// Where the nodes and faces of an element are.
@@ -64,6 +74,10 @@ pub enum ElementShape {
     Line2,
     /// One node; no faces.
     Point1,
+    /// Triangle of corners; its two sides are its faces.
+    Triangle3,
+    /// Quadrilateral of corners; its two sides are its faces.
+    Quadrilateral4,
 }
 
 /// What a section says of a connector: an element that is not a solid.
@@ -86,6 +100,8 @@ pub enum Connector {
         /// Mass, not negative.
         mass: f64,
     },
+    /// GAP elements and facets of rigid bodies: neither stiffness nor mass. What they do stands in pairs and equations.
+    Inert,
 }
 
 impl ElementKind {
@@ -104,8 +120,11 @@ impl ElementKind {
         Self::C3D8RCalculix,
     ];
 
-    /// Every other kind.
+    /// Kinds that connect nodes or give them mass.
     pub const CONNECTORS: [Self; 5] = [Self::T3D2, Self::SpringA, Self::Spring1, Self::Spring2, Self::Mass];
+
+    /// Kinds without stiffness and mass: contact elements and facets of rigid bodies.
+    pub const INERT: [Self; 5] = [Self::GapUni, Self::GapCyl, Self::GapSpher, Self::R3D3, Self::R3D4];
 
     /// Where its nodes and faces are.
     pub const fn shape(self) -> ElementShape {
@@ -116,8 +135,12 @@ impl ElementKind {
             Self::C3D10 => ElementShape::Tetrahedron10,
             Self::C3D15 => ElementShape::Wedge15,
             Self::C3D20 | Self::C3D20R => ElementShape::Hexahedron20,
-            Self::T3D2 | Self::SpringA | Self::Spring2 => ElementShape::Line2,
+            Self::T3D2 | Self::SpringA | Self::Spring2 | Self::GapUni | Self::GapCyl | Self::GapSpher => {
+                ElementShape::Line2
+            }
             Self::Spring1 | Self::Mass => ElementShape::Point1,
+            Self::R3D3 => ElementShape::Triangle3,
+            Self::R3D4 => ElementShape::Quadrilateral4,
         }
     }
 
@@ -128,7 +151,20 @@ impl ElementKind {
 
     /// Whether it is a solid: it has faces, a volume and stresses in all components.
     pub const fn is_solid(self) -> bool {
-        !matches!(self.shape(), ElementShape::Line2 | ElementShape::Point1)
+        !matches!(
+            self.shape(),
+            ElementShape::Line2 | ElementShape::Point1 | ElementShape::Triangle3 | ElementShape::Quadrilateral4
+        )
+    }
+
+    /// Whether it is a GAP element: a contact point.
+    pub const fn is_gap(self) -> bool {
+        matches!(self, Self::GapUni | Self::GapCyl | Self::GapSpher)
+    }
+
+    /// Whether it is a facet of a rigid body: it has two faces, SPOS (S1) and SNEG (S2), and no volume.
+    pub const fn is_facet(self) -> bool {
+        matches!(self, Self::R3D3 | Self::R3D4)
     }
 
     /// Name in a deck.
@@ -148,6 +184,11 @@ impl ElementKind {
             Self::Spring1 => "SPRING1",
             Self::Spring2 => "SPRING2",
             Self::Mass => "MASS",
+            Self::GapUni => "GAPUNI",
+            Self::GapCyl => "GAPCYL",
+            Self::GapSpher => "GAPSPHER",
+            Self::R3D3 => "R3D3",
+            Self::R3D4 => "R3D4",
         }
     }
 }
@@ -174,6 +215,8 @@ const HEXAHEDRON20: &[&[u8]] = &[
     &[2, 3, 7, 6, 10, 19, 14, 18],
     &[3, 0, 4, 7, 11, 16, 15, 19],
 ];
+const TRIANGLE3: &[&[u8]] = &[&[0, 1, 2], &[0, 2, 1]];
+const QUADRILATERAL4: &[&[u8]] = &[&[0, 1, 2, 3], &[0, 3, 2, 1]];
 
 impl ElementShape {
     /// Number of nodes.
@@ -187,6 +230,8 @@ impl ElementShape {
             Self::Hexahedron20 => 20,
             Self::Line2 => 2,
             Self::Point1 => 1,
+            Self::Triangle3 => 3,
+            Self::Quadrilateral4 => 4,
         }
     }
 
@@ -200,6 +245,8 @@ impl ElementShape {
             Self::Hexahedron8 => HEXAHEDRON8,
             Self::Hexahedron20 => HEXAHEDRON20,
             Self::Line2 | Self::Point1 => &[],
+            Self::Triangle3 => TRIANGLE3,
+            Self::Quadrilateral4 => QUADRILATERAL4,
         }
     }
 }
@@ -212,6 +259,13 @@ pub struct FaceNodes {
 }
 
 impl FaceNodes {
+    /// One node in place of a face.
+    pub fn single(node: NodeId) -> Self {
+        let mut nodes = [NodeId(0); FACE_NODES_MAX];
+        nodes[0] = node;
+        Self { nodes, count: 1 }
+    }
+
     /// The corners only.
     pub fn corners(&self) -> &[NodeId] {
         let corners = if self.count > 4 { self.count / 2 } else { self.count };

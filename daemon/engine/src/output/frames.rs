@@ -22,6 +22,8 @@ fn cell(shape: ElementShape) -> (u8, Option<&'static [usize]>) {
         ElementShape::Hexahedron20 => (25, None),
         ElementShape::Line2 => (3, None),
         ElementShape::Point1 => (1, None),
+        ElementShape::Triangle3 => (5, None),
+        ElementShape::Quadrilateral4 => (9, None),
     }
 }
 

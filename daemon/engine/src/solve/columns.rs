@@ -62,7 +62,7 @@ pub fn force_pattern(model: &Model, kind: &LoadKind) -> Column {
 }
 
 /// Mass that each node of an element stands for under a uniform acceleration: ∫ ρ N dV, half of ρ A L of a bar, all of a point
-/// mass; none for a spring.
+/// mass; none for a spring and for what is inert.
 fn nodal_masses(model: &Model, e: ElementId) -> Vec<f64> {
     let mesh = &model.mesh;
     let density = || {
@@ -78,7 +78,7 @@ fn nodal_masses(model: &Model, e: ElementId) -> Vec<f64> {
         }
         Some(Connector::Bar { area }) => vec![0.5 * density() * area * connector::length(&coordinates); 2],
         Some(Connector::Mass { mass }) => vec![*mass],
-        Some(Connector::Spring { .. }) => Vec::new(),
+        Some(Connector::Spring { .. } | Connector::Inert) => Vec::new(),
     }
 }
 

@@ -157,7 +157,6 @@ impl Builder<'_> {
         Some(self.interaction_names[position as usize])
     }
 
-    #[expect(dead_code, reason = "the reader of *GAP calls it")]
     /// Interaction that a `*GAP` or `*INTERFACE` card defines; `None` when it is faulty, which has been reported.
     pub(super) fn element_interaction(&self, card: &Card) -> Option<InteractionId> {
         let lines = self.interaction_lines.iter().position(|lines| lines.at == card.at)?;

@@ -240,5 +240,8 @@ fn order_remedy(kind: ElementKind) -> &'static str {
             "list the first three corners anticlockwise seen from the fourth, then the midside nodes of 1-2, 2-3, 3-1, 1-4, 2-4, 3-4; check the coordinates"
         }
         ElementShape::Line2 | ElementShape::Point1 => "give the two nodes different coordinates",
+        ElementShape::Triangle3 | ElementShape::Quadrilateral4 => {
+            "list the corners around the facet; check the coordinates"
+        }
     }
 }

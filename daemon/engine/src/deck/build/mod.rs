@@ -7,6 +7,7 @@ mod damping;
 mod enforcement;
 mod equations;
 mod friction;
+mod gaps;
 mod interactions;
 mod layout;
 mod loads;
@@ -113,6 +114,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_equations(&layout);
     builder.build_interactions(&layout);
     builder.build_pairs(&layout);
+    builder.build_gaps(&layout);
     builder.build_amplitudes(&layout);
     builder.build_initial_boundaries(&layout);
     builder.build_steps(&layout);

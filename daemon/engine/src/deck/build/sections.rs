@@ -29,13 +29,17 @@ fn section_of(kind: ElementKind) -> (&'static str, &'static str) {
             (SPRING, "give their set a *SPRING with a stiffness")
         }
         ElementKind::Mass => (MASS, "give their set a *MASS"),
+        kind if kind.is_gap() => ("*GAP", "give their set a *GAP"),
+        kind if kind.is_facet() => ("*RIGID BODY", "name their set in a *RIGID BODY"),
         _ => (SOLID, "give their set a *SOLID SECTION with a material"),
     }
 }
 
 impl Builder<'_> {
     pub(super) fn build_sections(&mut self, layout: &Layout<'_>) {
-        let mut owner: Vec<Option<Assigned>> = vec![None; self.model.mesh.elements.len()];
+        let inert = Assigned { material: MaterialId::NONE, connector: Some(Connector::Inert) };
+        let of_kind = |kind: ElementKind| (kind.is_gap() || kind.is_facet()).then_some(inert);
+        let mut owner: Vec<Option<Assigned>> = self.model.mesh.elements.iter().map(|(kind, _)| of_kind(kind)).collect();
         let mut sound = true;
         for card in &layout.model {
             let done = match card.keyword.name {
