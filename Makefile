@@ -13,7 +13,7 @@ BIN := $(VENV)/bin
 # The environment carries the checksum of what it was made from; another checksum makes another stamp.
 WANTED := $(shell cat tests/requirements.txt clients/python/pyproject.toml | cksum | cut -d' ' -f1)
 STAMP := $(VENV)/made-from-$(WANTED)
-PYTHON_CODE := tests examples benches clients/python
+PYTHON_CODE := tests examples benches docs clients/python
 
 .PHONY: all build env test test-rust test-python check demo bench growth increments clean
 
