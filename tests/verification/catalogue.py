@@ -95,6 +95,12 @@ CASES = [
         "1e-11",
     ),
     Case(
+        "A07",
+        "The solver shall invert the exponential law, from a millionth of p0 to beyond its straight continuation.",
+        "bisection to 50 digits",
+        "1e-12; 1e-14 c0 near the onset",
+    ),
+    Case(
         "A07-deck",
         "The solver shall invert the exponential law for a dead load from 1e-12 to 1e9 times p0.",
         "bisection to 40 digits",
@@ -107,10 +113,22 @@ CASES = [
         "1e-12",
     ),
     Case(
+        "A13",
+        "The solver shall evaluate the straight and the nonlinear penalty, and the penalty with a multiplier.",
+        "closed form in fractions",
+        "1e-11",
+    ),
+    Case(
         "A13-deck",
         "The solver shall enforce hard contact by linear and nonlinear penalties.",
         "closed form, bisection with a spring in series",
         "1e-11",
+    ),
+    Case(
+        "A14",
+        "The solver shall give the damping coefficient over the clearance, and its slope.",
+        "closed form",
+        "1e-12",
     ),
     Case(
         "A14-deck",
