@@ -3,6 +3,7 @@
 # make bench  timings against CalculiX (if installed), table in out/bench
 # make growth      time and memory of the punch from small to large, table and picture in out/bench
 # make increments  milliseconds per further increment of a deck that is set up
+# make robustness  a thousand random small decks, each failure with its reason in out/robustness
 #
 # Needs: Rust 1.90 or later, Python 3.11 or later with venv and pip, a C compiler.
 
@@ -15,7 +16,7 @@ WANTED := $(shell cat tests/requirements.txt clients/python/pyproject.toml | cks
 STAMP := $(VENV)/made-from-$(WANTED)
 PYTHON_CODE := tests examples benches docs clients/python
 
-.PHONY: all build env test test-rust test-python check demo bench growth increments clean
+.PHONY: all build env test test-rust test-python check demo bench growth increments robustness clean
 
 all: build
 
@@ -56,6 +57,9 @@ growth: build env
 
 increments:
 	$(CARGO) bench -p overclosure --bench increments
+
+robustness: build env
+	PYTHONPATH=tests:examples $(BIN)/python -m robustness --decks 1000 --out out/robustness
 
 clean:
 	rm -rf $(VENV) out

@@ -11,8 +11,9 @@ import support
 
 from ..comparison import DISPLACEMENT_MAX, columns
 from .draws import KINDS, random_plan
-from .march import March, Unsuitable
+from .march import March
 from .plan import text
+from .problem import Unsuitable
 
 TRIES = 40
 
