@@ -5,6 +5,7 @@ import math
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import zenoh
 
 import overclosure
 
+ROOT = Path(__file__).parents[3]
 INPUT = "boundary.NTOP.3"
 FORCE = "contact.SSL_SMA.CFN3"
 
@@ -71,6 +73,72 @@ def test_a_refused_law_is_an_exception_with_its_reasons(client):
     with pytest.raises(overclosure.Fault) as caught:
         client.law("linear", {"stiffness": 1}, [math.nan])
     assert caught.value.code == "not_finite"
+
+
+def law_deck(name, *replacements):
+    """A deck of the laws document with other lines."""
+    text = (ROOT / "docs" / "laws" / "decks" / f"{name}.inp").read_text(encoding="utf-8")
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+HARD = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n"
+
+
+def test_augmentations_are_counted_per_step_and_in_the_report(client):
+    # Spring 100, penalty 150 on an area of 2: each augmentation leaves a quarter of the overclosure, 0.03 / 4 at first.
+    augmented = (HARD, "*SURFACE BEHAVIOR, AUGMENTED LAGRANGE\n150.,\n")
+    tolerance = ("*BOUNDARY, AMPLITUDE", "*CONTACT CONTROLS, ABSOLUTE PENETRATION TOLERANCE=1e-4\n*BOUNDARY, AMPLITUDE")
+    with client.open(law_deck("hard", augmented, tolerance)) as session:
+        done = []
+        for time in range(1, 12):
+            done.append(session.step(float(time)).counts.augmentations)
+            left = -session.field("COPEN").values[0]
+            assert left <= 1e-4
+        assert done[:4] == [0, 0, 0, 0] and max(done) > 0
+        # A further 0.005 of the spring presses the point in by 0.00125; without kept multipliers it would be 0.0075.
+        assert 1 <= done[-1] <= 4
+        assert session.report().steps[0].counts.augmentations == sum(done)
+
+
+def test_statuses_of_points_come_over_the_wire(client):
+    def statuses(text, end):
+        with client.open(text) as session:
+            found = []
+            for time in range(1, end + 1):
+                session.step(float(time))
+                field = session.field("CSTATUS")
+                assert field.labels.tolist() == [11]
+                found.append(int(field.values[0]))
+            return found
+
+    # At time 5 the point just touches: open or closed.
+    hard = statuses(law_deck("hard"), 8)
+    assert hard[:4] == [0, 0, 0, 0] and hard[5:] == [1, 1, 1]
+    rough = (HARD, HARD + "*FRICTION, ROUGH\n")
+    springs = ("*MATERIAL", "*ELEMENT, TYPE=SPRING1, ELSET=SIDE\n102, 11\n*SPRING, ELSET=SIDE\n1,\n7.,\n*MATERIAL")
+    side = ("POINT, 1, 2\n", "POINT, 2, 2\n")
+    assert statuses(law_deck("hard", rough, side, springs), 8)[5:] == [2, 2, 2]
+    damped = (HARD, HARD + "*CONTACT DAMPING\n8., 0.1, 0.4\n")
+    assert statuses(law_deck("hard", damped), 8)[1:4] == [4, 4, 4]
+
+
+def test_the_touch_of_no_separation_survives_the_wire(client):
+    """After a restore into another session a latched point still pulls, with the same bits."""
+    deck = law_deck("no-separation")
+    with client.open(deck) as first, client.open(deck) as second:
+        first.step(10.0)
+        assert first.field("CSTATUS").values[0] == 1
+        state = first.checkpoint()
+        ends = []
+        for session in (first, second):
+            session.restore(state)
+            step = session.step(20.0)
+            ends.append((step.vector.tobytes(), session.field("CPRESS").values.tobytes()))
+            assert session.field("CPRESS").values[0] < 0 and session.field("CSTATUS").values[0] == 1
+        assert ends[0] == ends[1]
 
 
 def test_a_session_steps_reads_and_goes_back_bit_for_bit(client, deck):

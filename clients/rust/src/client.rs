@@ -86,7 +86,8 @@ impl Client {
         self.ask(DaemonVerb::Load).await
     }
 
-    /// Evaluates a law at many overclosures.
+    /// Evaluates a law, or contact damping, at many overclosures; `Info::law_kinds` names the kinds. Arrays that the kind does not
+    /// have are empty.
     pub async fn law(&self, request: &LawRequest) -> Result<LawReply, CallError> {
         self.request(key::daemon(self.daemon(), DaemonVerb::Law), request, self.quick()).await
     }
