@@ -69,7 +69,7 @@ impl Simulation {
             }
             let allowed = modified
                 .map_or(0.0, |m| m.overclosure_max * (1.0 + TOLERATED))
-                .max(moment.penetration_max(i).unwrap_or(0.0) * (1.0 + TOLERATED));
+                .max(moment.penetration_max(i).map_or(0.0, |(tolerance, _)| tolerance) * (1.0 + TOLERATED));
             let hard = match moment.enforcement(i) {
                 Some(Enforcement::Lagrange | Enforcement::AugmentedLagrange(_)) => moment.is_active(i),
                 Some(Enforcement::Penalty(_) | Enforcement::NonlinearPenalty(_)) | None => false,

@@ -18,6 +18,9 @@ use crate::model::{
 /// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
 const OVERLAP_MAX: f64 = 0.5;
 
+/// Component of a unit vector or shape function that is rounding: left in, it would give a row of prescribed nodes a compliance.
+const ENTRY_ROUNDING: f64 = 1e-14;
+
 /// One node-to-surface constraint.
 #[derive(Clone, Debug)]
 pub struct ContactPoint {
@@ -50,10 +53,10 @@ impl ContactPoint {
     ///
     /// With `v = −normal` the row gives the overclosure that displacements add, with a tangent the slip.
     pub fn row(&self, v: [f64; 3], mut entry: impl FnMut(NodeId, usize, f64)) {
-        for (direction, component) in v.into_iter().enumerate().filter(|(_, c)| *c != 0.0) {
+        for (direction, component) in v.into_iter().enumerate().filter(|(_, c)| c.abs() > ENTRY_ROUNDING) {
             entry(self.node, direction, component);
             for (&node, &weight) in self.primary.iter().zip(&self.weights) {
-                if weight != 0.0 {
+                if weight.abs() > ENTRY_ROUNDING {
                     entry(node, direction, -weight * component);
                 }
             }

@@ -5,8 +5,8 @@
 //! 1. points of modified hard contact change their status by the state table (`modified_hard.rs`);
 //! 2. closed points under rough friction stick, open ones are free;
 //! 3. tangential dashpots follow the coefficient at their point's clearance;
-//! 4. augmented Lagrange: where a penetration exceeds the tolerance, every multiplier becomes the present pressure,
-//!    `λ ← max(0, λ + k (h + c0))`. The compliances stay, so no factor is computed again.
+//! 4. augmented Lagrange: where a penetration exceeds the tolerance, or a multiplier that is too large holds a point off by as
+//!    much, every multiplier becomes the present pressure, `λ ← max(0, λ + k (h + c0))`. The compliances stay, so no factor is computed again.
 
 use super::modified_hard::{Judged, Verdict, judge, withdraw};
 use super::rows::Moment;
@@ -272,10 +272,11 @@ impl Simulation {
     fn augment(&mut self, moment: &Moment<'_>) -> bool {
         let points = moment.plan.points();
         let too_deep = (0..points).any(|i| {
-            let Some(tolerance) = moment.penetration_max(i) else { return false };
+            let Some((tolerance, clearance)) = moment.penetration_max(i) else { return false };
             let h = self.work.overclosures[i];
-            let penetration = if self.state.latched[i] { h.abs() } else { h };
-            penetration > tolerance
+            // A multiplier that is too large holds a point off.
+            let held_off = -(h + clearance) > tolerance && self.work.forces[i] != 0.0;
+            h > tolerance || held_off
         });
         if !too_deep {
             return false;

@@ -195,14 +195,16 @@ impl<'a> Moment<'a> {
         self.model.interactions[self.interaction(point)].separation == crate::law::Separation::Prevented
     }
 
-    /// Penetration that augmented Lagrange leaves at a point \[length\]; none for other points.
-    pub fn penetration_max(&self, point: usize) -> Option<f64> {
+    /// Penetration that augmented Lagrange leaves at a point, and the clearance at which its pressure begins \[length\]; none for
+    /// other points.
+    pub fn penetration_max(&self, point: usize) -> Option<(f64, f64)> {
         match self.enforcement(point)? {
-            Enforcement::AugmentedLagrange(_) if self.is_active(point) => {
-                Some(match self.controls(point).penetration_tolerance {
+            Enforcement::AugmentedLagrange(line) if self.is_active(point) => {
+                let tolerance = match self.controls(point).penetration_tolerance {
                     PenetrationTolerance::Absolute(length) => length,
                     PenetrationTolerance::Relative(part) => part * self.plan.lengths[point],
-                })
+                };
+                Some((tolerance, line.clearance))
             }
             _ => None,
         }

@@ -65,17 +65,19 @@ enum Hold {
 
 /// Vectors of a step.
 #[derive(Default)]
-struct Steps {
+pub(super) struct Steps {
     free: Vec<f64>,
     place: Vec<f64>,
-    residual: Vec<f64>,
+    pub residual: Vec<f64>,
+    /// What the laws miss, and what motions add to it.
+    pub gaps: Vec<f64>,
     scales: Vec<f64>,
     /// `S` in units of the springs.
     stiffness: Dense,
-    factor: Vec<f64>,
+    pub factor: Vec<f64>,
     scratch: DenseScratch,
-    response: Vec<f64>,
-    newton: Vec<f64>,
+    pub response: Vec<f64>,
+    pub newton: Vec<f64>,
     /// Motions that the springs give: a step that always leads on.
     safe: Vec<f64>,
     /// The last balance found.
@@ -187,6 +189,9 @@ impl ContactSolver {
                 system.relief(unknowns.forces, unknowns.relief);
                 system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
                 if polished || self.laws_hold(system, problem, unknowns) {
+                    if hold == Hold::Full {
+                        self.refine(system, problem, &view, &held.springs, steps, unknowns);
+                    }
                     return Ok(counts);
                 }
                 // Laws much stiffer than the bodies feel the rounding of the soft springs.

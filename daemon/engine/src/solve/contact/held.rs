@@ -40,6 +40,8 @@ const CONFLICT_TOLERANCE: f64 = 1e-7;
 const CONFLICT_ROUNDING: f64 = 1e-14;
 /// Contact stiffness, relative to that of the bodies at the point, below which a point carries no force worth having.
 const NEGLIGIBLE_STIFFNESS: f64 = 1e-30;
+/// Compliance of a row against itself, relative to the largest, that is rounding: no force can move it.
+const NEGLIGIBLE_COMPLIANCE: f64 = 1e-24;
 /// Line search: accepted growth of the slope of Π beyond its minimum, relative to the slope at the start.
 const SLOPE_ACCEPTED: f64 = 0.5;
 
@@ -69,6 +71,8 @@ pub struct ContactSolver {
     factor_points: Vec<u32>,
     factor_compliance: Vec<f64>,
     factor_rows: Vec<u32>,
+    /// Compliance below which a row on its wall cannot be moved [length/force].
+    own_min: f64,
     factors: u32,
     /// Overclosures after each iteration of the last solve.
     #[cfg(test)]
@@ -134,6 +138,7 @@ impl ContactSolver {
         let mut counts = SolveCounts::default();
         let has_walls = (0..n).any(|i| view.has_wall(i));
         let factorizations = self.sparse.factorizations;
+        self.own_min = NEGLIGIBLE_COMPLIANCE * (0..n).map(|i| view.own(i)).fold(0.0, f64::max);
         #[cfg(test)]
         self.iterates.clear();
         self.on_curve.fill(false);
@@ -303,7 +308,7 @@ impl ContactSolver {
             self.factor_points.clone_from(&self.active);
             self.factor_compliance.clear();
             self.factor_compliance.extend(self.active.iter().map(|&i| self.compliance[i as usize]));
-            self.factor_rows.clone_from(&self.active);
+            self.take_movable(view);
             self.factors += 1;
             self.fill_factor(view);
             let size = self.factor_rows.len();
@@ -325,22 +330,39 @@ impl ContactSolver {
         }
     }
 
+    /// Rows of the factor: the active ones less those on a wall that no force can move.
+    fn take_movable(&mut self, view: &View<'_>) {
+        self.factor_rows.clear();
+        for &i in &self.active {
+            if !self.on_wall[i as usize] || view.own(i as usize) > self.own_min {
+                self.factor_rows.push(i);
+            }
+        }
+    }
+
     /// The same by sparse solves.
     fn solve_active_sparse(&mut self, view: &View<'_>, free: &[f64]) {
+        self.take_movable(view);
         self.right.clear();
         self.factor_compliance.clear();
-        let mut forces: Vec<f64> = Vec::with_capacity(self.active.len());
-        for &i in &self.active {
+        for &i in &self.factor_rows {
             self.right.push(free[i as usize] - self.onset[i as usize]);
             self.factor_compliance.push(self.compliance[i as usize]);
-            forces.push(0.0);
         }
-        let solved = self.sparse.solve(view, &self.active, &self.factor_compliance, &self.right, &mut forces);
-        self.factor_rows.clone_from(&self.active);
+        let mut forces = vec![0.0; self.factor_rows.len()];
+        let solved = self.sparse.solve(view, &self.factor_rows, &self.factor_compliance, &self.right, &mut forces);
         self.trial.fill(0.0);
-        for (&i, force) in self.active.iter().zip(&forces) {
+        for (&i, force) in self.factor_rows.iter().zip(&forces) {
             // Without a factor nothing is known: the iteration ends as not converged.
             self.trial[i as usize] = if solved { *force } else { f64::NAN };
+        }
+    }
+
+    /// `h − onset − C F` at the rows of the factor: what the linearised laws miss.
+    pub(super) fn law_gaps(&self, overclosures: &[f64], forces: &[f64], out: &mut [f64]) {
+        for &i in &self.factor_rows {
+            let i = i as usize;
+            out[i] = overclosures[i] - self.onset[i] - self.compliance[i] * forces[i];
         }
     }
 

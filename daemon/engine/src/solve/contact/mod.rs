@@ -10,6 +10,7 @@
 mod active_sparse;
 mod balance;
 mod held;
+mod refinement;
 mod row;
 #[cfg(test)]
 mod row_tests;
