@@ -3,12 +3,19 @@
 import csv
 
 import numpy as np
+from invariance.cards import Sets, parse
 
 import support
 
 TOLERANCE = 1e-10
 # What is small against what: columns that share a scale, because some of them are rounding alone.
-LENGTHS, FORCES = ("U", "COPEN", "CSLIP"), ("RF", "CFN", "CPRESS")
+LENGTHS, FORCES, PRESSURES = (
+    ("U", "COPEN", "CSLIP"),
+    ("RF", "CFN", "CFS", "CFT"),
+    ("CPRESS", "CSHEAR", "CDPRESS", "CDSHEAR"),
+)
+# Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits.
+RESOLVED = 1e-6
 
 
 def tables(folder, deck, path):
@@ -16,7 +23,8 @@ def tables(folder, deck, path):
     folder.mkdir(parents=True)
     source = folder / "deck.inp"
     source.write_text(deck.text)
-    support.run(source, folder, *deck.arguments, "--path", path)
+    arguments = [word for word in deck.arguments if word not in ("--path", "dense", "sparse")]
+    support.run(source, folder, *arguments, "--path", path)
     found = {}
     for name in ("contact", "nodes", "history"):
         with open(folder / f"deck_{name}.csv", newline="", encoding="utf-8") as file:
@@ -26,19 +34,26 @@ def tables(folder, deck, path):
 
 
 def family(column):
-    """Columns with one scale: displacements with clearances, forces with forces, energies, every other column by itself."""
+    """Columns with one scale: displacements with clearances, forces, pressures with shear, energies; every other column by itself."""
     name = column.partition("[")[0].rstrip("123M")
-    if name in LENGTHS:
-        return "length"
-    if name in FORCES:
-        return name
+    for kind, names in (("length", LENGTHS), ("force", FORCES), ("pressure", PRESSURES)):
+        if name in names:
+            return kind
     return "energy" if column.startswith(("ALL", "ETOTAL", "IMPACT")) else column
 
 
-def differing(dense, sparse):
-    """Columns that differ by more than TOLERANCE against the largest value of their family, and statuses that differ."""
-    found, scales = {}, {}
-    numbers = {}
+def size(text):
+    """Largest extent of the nodes of a deck."""
+    coordinates = list(Sets(parse(text)).coordinates.values())
+    return float(np.ptp(np.array(coordinates), axis=0).max())
+
+
+def differing(dense, sparse, extent=0.0):
+    """Columns that differ by more than TOLERANCE against the largest value of their family, and statuses that differ.
+
+    `extent` is the size of the deck [length].
+    """
+    found, scales, numbers = {}, {"length": RESOLVED * extent, "force": 0.0, "energy": 0.0}, {}
     for name, (header, rows) in dense.items():
         other, theirs = sparse[name]
         if header != other or len(rows) != len(theirs):
@@ -54,8 +69,7 @@ def differing(dense, sparse):
             pair = [np.array([float(v or 0.0) for v in values]) for values in (ours, yours)]
             numbers[name, column] = pair
             scales[family(column)] = max(scales.get(family(column), 0.0), np.abs(pair[0]).max(initial=0.0))
-    force = max(scales.get("RF", 0.0), scales.get("CFN", 0.0))
-    scales |= {"RF": force, "CFN": force}
+    scales["energy"] = max(scales["energy"], scales["force"] * scales["length"])
     for (name, column), (ours, yours) in numbers.items():
         difference = np.abs(ours - yours).max(initial=0.0)
         if not difference <= TOLERANCE * scales[family(column)]:
@@ -69,7 +83,8 @@ def disagreements(decks, folder):
     for number, deck in enumerate(decks):
         place = folder / str(number)
         try:
-            bad = differing(tables(place / "dense", deck, "dense"), tables(place / "sparse", deck, "sparse"))
+            by_path = [tables(place / path, deck, path) for path in ("dense", "sparse")]
+            bad = differing(*by_path, size(deck.text))
         except AssertionError as error:
             bad = str(error)[-600:]
         if bad:

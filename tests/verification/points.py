@@ -64,6 +64,8 @@ def deck(points, behavior, steps, *, face=2.0, area=1.0, pair=(), model=()):
     if driven:
         lines.append("*NODE, NSET=DRIVERS")
         lines += [f"{driver(i)}, {across[i]!r}, 0., {points[i].clearance + 1.0!r}" for i in driven]
+        lines += ["*NSET, NSET=MOVING", "POINTS, DRIVERS"]
+        steps = [line.replace("*NODE PRINT, NSET=POINTS", "*NODE PRINT, NSET=MOVING") for line in steps]
     number, held = 100, []
     for i, point in enumerate(points):
         if point.spring:
@@ -100,6 +102,12 @@ def amplitude(name, values, period=1.0):
     """`*AMPLITUDE` with values at equal distances in time, the first at time zero."""
     spacing = period / (len(values) - 1)
     return [f"*AMPLITUDE, NAME={name}", *(f"{i * spacing!r}, {value!r}" for i, value in enumerate(values))]
+
+
+def moved(result, label=FIRST):
+    """Displacements of a node at each output time."""
+    found = [row for row in result.table("nodes") if int(row["node"]) == label]
+    return [tuple(float(row[f"U{d}"]) for d in (1, 2, 3)) for row in found]
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import pytest
 
 import support
-from verification.points import Point, amplitude, deck, driver, node, rows, step
+from verification.points import Point, amplitude, deck, driver, moved, node, rows, step
 
 HARD = ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"]
 LINEAR = ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", "750."]
@@ -15,8 +15,7 @@ def solve(write_deck, tmp_path, text):
     """Points by increment and displacements of the first node away from the wall."""
     result = support.run(write_deck(text), tmp_path)
     assert result.summary()["audit"] == []
-    moved = [float(row["U3"]) for row in result.table("nodes") if row["node"] == str(node())]
-    return rows(result), moved
+    return rows(result), [place[2] for place in moved(result)]
 
 
 def interference(*words, data="POINTS, WALL"):
@@ -44,10 +43,10 @@ def test_b13_shrink_resolves_the_initial_overclosure_over_the_step(write_deck, t
     for number, increment in enumerate(found, 1):
         part = min(1.0, number / INCREMENTS)
         for own, point in zip(depths, increment, strict=True):
-            moved, pressure = pressed_out(spring, part * own, area, stiffness)
+            shift, pressure = pressed_out(spring, part * own, area, stiffness)
             assert point.pressure == pytest.approx(pressure, rel=1e-11, abs=1e-12)
             assert point.status == ("CL" if own > 0.0 else "OP")
-            assert moved == pytest.approx(area * point.pressure / spring, rel=1e-11, abs=1e-14)
+            assert shift == pytest.approx(area * point.pressure / spring, rel=1e-11, abs=1e-14)
 
 
 def test_b13_shrink_ignores_an_amplitude(write_deck, tmp_path):
@@ -64,8 +63,8 @@ def test_b13_shrink_ignores_an_amplitude(write_deck, tmp_path):
 def test_b13_an_allowed_interference_acts_at_once_and_ramps_to_zero(write_deck, tmp_path, spring, depth, factor):
     """`h_eff = h - v (1 - t)`: less than the overclosure allowed, the rest is resolved at once; more, nothing until it is used up."""
     lines = step(*interference(data=f"POINTS, WALL, {factor * depth!r}"), increments=INCREMENTS) + step()
-    found, moved = solve(write_deck, tmp_path, deck([Point(clearance=-depth, spring=spring)], HARD, lines))
-    for number, ((point,), u) in enumerate(zip(found, moved, strict=True), 1):
+    found, motion = solve(write_deck, tmp_path, deck([Point(clearance=-depth, spring=spring)], HARD, lines))
+    for number, ((point,), u) in enumerate(zip(found, motion, strict=True), 1):
         left = depth - factor * depth * max(0.0, 1.0 - number / INCREMENTS)
         expected, pressure = pressed_out(spring, left, 1.0, None)
         assert u == pytest.approx(expected, rel=1e-11, abs=1e-14)
@@ -81,8 +80,8 @@ def test_b13_an_amplitude_scales_the_allowed_interference(write_deck, tmp_path):
     card = interference("AMPLITUDE=WAVE", data=f"POINTS, WALL, {allowed!r}")
     lines = step(*card, increments=INCREMENTS) + step()
     text = deck([Point(clearance=-depth, spring=spring)], HARD, lines, model=amplitude("WAVE", [0.0, *values]))
-    found, moved = solve(write_deck, tmp_path, text)
-    for value, (point,), u in zip([*values, values[-1]], found, moved, strict=True):
+    found, motion = solve(write_deck, tmp_path, text)
+    for value, (point,), u in zip([*values, values[-1]], found, motion, strict=True):
         left = depth - value * allowed
         assert u == pytest.approx(left, rel=1e-11)
         assert point.pressure == pytest.approx(spring * left, rel=1e-11)
@@ -90,10 +89,10 @@ def test_b13_an_amplitude_scales_the_allowed_interference(write_deck, tmp_path):
 
 def test_b13_without_interference_the_overclosure_is_resolved_at_once(write_deck, tmp_path):
     spring, depth = 200.0, 0.02
-    found, moved = solve(
+    found, motion = solve(
         write_deck, tmp_path, deck([Point(clearance=-depth, spring=spring)], HARD, step(increments=INCREMENTS))
     )
-    assert moved == pytest.approx([depth] * INCREMENTS, rel=1e-12)
+    assert motion == pytest.approx([depth] * INCREMENTS, rel=1e-12)
     assert [p.pressure for (p,) in found] == pytest.approx([spring * depth] * INCREMENTS, rel=1e-12)
 
 
@@ -108,8 +107,8 @@ def test_b28_a_uniform_clearance_overrides_the_geometry(write_deck, tmp_path, pl
     model = [f"*CLEARANCE, MASTER=WALL, SLAVE=POINTS, VALUE={clearance!r}"]
     lines = step("*BOUNDARY", f"{driver()}, 3, 3, {-push!r}", increments=4)
     text = deck([Point(clearance=place, driver=stiffness)], HARD, lines, model=model)
-    found, moved = solve(write_deck, tmp_path, text)
-    for number, ((point,), u) in enumerate(zip(found, moved, strict=True), 1):
+    found, motion = solve(write_deck, tmp_path, text)
+    for number, ((point,), u) in enumerate(zip(found, motion, strict=True), 1):
         at = push * number / 4 - clearance
         assert u == pytest.approx(-min(push * number / 4, clearance), rel=1e-11, abs=1e-13)
         assert point.pressure == pytest.approx(stiffness * max(0.0, at), rel=1e-11, abs=1e-11)
