@@ -106,7 +106,7 @@ pub struct Faces {
     pub names: Vec<(Box<str>, u8, At)>,
 }
 
-/// Parameters of a card that are read.
+/// Parameters of a card that are read, or refused.
 #[derive(Default)]
 pub struct Parameters(Vec<(&'static str, Option<String>)>);
 
@@ -163,6 +163,7 @@ pub fn parse_header(line: &str, at: At, report: &mut Report) -> Option<Header> {
     }
     let mut header = Header { keyword, parameters: Parameters::default(), faulty: false };
     if !keyword.is_read() {
+        header.note(parts);
         return Some(header);
     }
     for part in parts.filter(|part| !part.is_empty()) {
@@ -203,6 +204,16 @@ fn unknown_keyword(word: &str, at: At, report: &mut Report) {
 }
 
 impl Header {
+    /// Keeps the parameters of a refused keyword that combinations are judged by; the others do not matter any more.
+    fn note<'p>(&mut self, parts: impl Iterator<Item = &'p str>) {
+        for part in parts {
+            let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
+            if let Some(parameter) = find_parameter(self.keyword, name.trim()) {
+                self.parameters.0.push((parameter.name, value.map(|value| unquoted(value.trim()).to_string())));
+            }
+        }
+    }
+
     fn unknown_parameter(&mut self, name: &str, at: At, report: &mut Report) {
         let remedy = match report.suggest(name, self.keyword.parameters.iter().map(|parameter| parameter.name)) {
             Some(known) => format!("did you mean {known}?"),
@@ -255,7 +266,8 @@ impl Header {
         };
         match effect {
             Effect::Refused(remedy) => {
-                return fault(format!("{shown} is not supported and would change the answer"), remedy.into());
+                fault(format!("{shown} is not supported and would change the answer"), remedy.into());
+                // Combinations are judged by it all the same.
             }
             Effect::Ignored(why) => {
                 return report.warning(at, self.keyword.name, format!("{shown} is ignored: {why}"), "");

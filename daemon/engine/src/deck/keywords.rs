@@ -1,6 +1,6 @@
 //! What the reader knows about keywords: types of the table, look-up, and the uniform checks of parameters.
 //!
-//! The tables themselves stand in `model_table`, `body_table` and `step_table` (keywords that are read) and `other_table`
+//! The tables themselves stand in `model_table`, `contact_table`, `body_table` and `step_table` (keywords that are read) and `other_table`
 //! (keywords that are known but not read).
 
 use std::sync::LazyLock;
@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use rustc_hash::FxHashMap;
 
 use super::body_table::BODIES;
+use super::contact_table::CONTACT;
 use super::lex::key;
 use super::model_table::MODEL;
 use super::other_table::OTHER;
@@ -175,7 +176,7 @@ impl Keyword {
 
 /// Every keyword that the reader knows: those it reads first, then the others.
 pub fn keywords() -> impl Iterator<Item = &'static Keyword> {
-    MODEL.iter().chain(BODIES).chain(STEPS).chain(OTHER)
+    MODEL.iter().chain(CONTACT).chain(BODIES).chain(STEPS).chain(OTHER)
 }
 
 static BY_KEY: LazyLock<FxHashMap<String, &'static Keyword>> =

@@ -4,18 +4,22 @@
 //! arrays as they come, so that the text is never held; the second builds the model from the cards, so that references
 //! may point forwards. Neither stops at a fault: every finding is in [`Reading::diagnostics`].
 
+mod availability;
 mod body_table;
 mod build;
 mod card;
 mod collect;
+mod contact_table;
 mod data;
 mod dialect;
+mod facts;
 mod keywords;
 mod lex;
 mod members;
 mod model_table;
 mod other_table;
 mod report;
+mod rules;
 mod source;
 mod step_table;
 mod summary;
@@ -26,8 +30,10 @@ use std::path::Path;
 use crate::diagnostic::Diagnostic;
 use crate::model::{Dialect, Model};
 
+pub use availability::{Blame, Citation, Confidence, FEATURES, Family, Feature, Offer};
 pub use dialect::{Difference, differences};
 pub use keywords::{DataLines, Effect, Keyword, Parameter, ParameterValue, Placement, keywords};
+pub use rules::{RULES, Rule};
 pub use summary::summary;
 
 use report::{At, Report};

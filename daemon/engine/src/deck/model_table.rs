@@ -1,15 +1,13 @@
-//! Keywords of the model part that are read, with every parameter that is known for them.
+//! Keywords of the model part that are read, but for contact (`contact_table`), with every parameter that is known for them.
 
 use super::keywords::DataLines::{Elements, Faces, Fields, Forbidden, Members, Nodes, Text};
 use super::keywords::Effect::{Read, Refused};
-use super::keywords::Placement::{Anywhere, Interaction, Material, Model};
+use super::keywords::Placement::{Anywhere, Material, Model};
 use super::keywords::{Keyword, Parameter as P};
 
 const WRITE_INTO_DECK: &str = "bring the lines in with *INCLUDE under the keyword";
 const FLAT_DECK: &str = "write the deck without parts and assemblies";
 const NO_DAMPING: &str = "damping has no effect in a static step";
-const NO_MORTAR: &str =
-    "mortar contact is not solved; write TYPE=NODE TO SURFACE to have forces act at the secondary nodes";
 const STATICS_ONLY: &str = "only static steps are solved";
 
 /// Keywords that describe the model.
@@ -262,108 +260,6 @@ pub const MODEL: &[Keyword] = &[
             P::refused("MASS FLOW", "only solids are solved"),
             P::refused("TIMEDELAY", "put the delay into the amplitude"),
             P::refused("SECTOR", "write the values of each sector"),
-        ],
-    ),
-    Keyword::read(
-        "*SURFACE INTERACTION",
-        Model,
-        Fields,
-        &[
-            P::required("NAME"),
-            P::silent("UNSYMM"),
-            P::silent("TRACKING THICKNESS"),
-            P::refused("PAD THICKNESS", "move the nodes of the secondary surface"),
-            P::refused("USER", "choose a law with *SURFACE BEHAVIOR"),
-            P::refused("DEPVAR", "choose a law with *SURFACE BEHAVIOR"),
-            P::refused("PROPERTIES", "choose a law with *SURFACE BEHAVIOR"),
-        ],
-    ),
-    Keyword::read(
-        "*SURFACE BEHAVIOR",
-        Interaction,
-        Fields,
-        &[
-            P::one_of(
-                "PRESSURE-OVERCLOSURE",
-                &[
-                    ("HARD", Read),
-                    ("LINEAR", Read),
-                    ("TABULAR", Read),
-                    ("EXPONENTIAL", Read),
-                    ("TIED", Refused("tied contact is not solved; choose HARD, LINEAR, TABULAR or EXPONENTIAL")),
-                    ("SCALEFACTOR", Refused("choose HARD, LINEAR, TABULAR or EXPONENTIAL")),
-                    ("USER", Refused("choose HARD, LINEAR, TABULAR or EXPONENTIAL")),
-                ],
-            ),
-            P::flag("AUGMENTED LAGRANGE"),
-            P::flag("NO SEPARATION"),
-            P::flag("DIRECT"),
-            P::one_of("PENALTY", &[("", Read), ("LINEAR", Read), ("NONLINEAR", Read)]),
-        ],
-    ),
-    Keyword::read(
-        "*CONTACT DAMPING",
-        Interaction,
-        Fields,
-        &[
-            P::one_of("DEFINITION", &[("DAMPINGCOEFFICIENT", Read), ("CRITICALDAMPINGFRACTION", Read)]),
-            P::value("TANGENT FRACTION"),
-        ],
-    ),
-    Keyword::read(
-        "*FRICTION",
-        Interaction,
-        Fields,
-        &[
-            P::silent("SLIP TOLERANCE"),
-            P::silent("ELASTIC SLIP"),
-            P::silent("LAGRANGE"),
-            P::silent("TAUMAX"),
-            P::silent("SHEAR TRACTION SLOPE"),
-            P::flag("ROUGH"),
-            P::refused("USER", "contact is solved without friction"),
-            P::refused("ANISOTROPIC", "contact is solved without friction"),
-            P::refused("EXPONENTIAL DECAY", "contact is solved without friction"),
-            P::refused("TEST DATA", "contact is solved without friction"),
-            P::refused("DEPENDENCIES", "contact is solved without friction"),
-            P::refused("DEPVAR", "contact is solved without friction"),
-            P::refused("PROPERTIES", "contact is solved without friction"),
-        ],
-    ),
-    Keyword::read(
-        "*CONTACT PAIR",
-        Model,
-        Fields,
-        &[
-            P::required("INTERACTION"),
-            P::one_of(
-                "TYPE",
-                &[
-                    ("NODETOSURFACE", Read),
-                    ("SURFACETOSURFACE", Read),
-                    ("MORTAR", Refused(NO_MORTAR)),
-                    ("LINMORTAR", Refused(NO_MORTAR)),
-                    ("PGLINMORTAR", Refused(NO_MORTAR)),
-                    ("PGMORTAR", Refused(NO_MORTAR)),
-                    ("MASSLESS", Refused("it belongs to explicit dynamics; in statics write TYPE=NODE TO SURFACE")),
-                ],
-            ),
-            P::flag("SMALL SLIDING"),
-            P::silent("NO THICKNESS"),
-            P::silent("CPSET"),
-            P::value("EXTENSION ZONE"),
-            P::value("ADJUST"),
-            P::ignored("HCRIT", "a large overclosure does not cut the increment back"),
-            P::ignored("SMOOTH", "sliding is small; the primary surface is used as meshed"),
-            P::ignored("SLIDE DISTANCE", "sliding is small"),
-            P::ignored("TRACKING", "sliding is small"),
-            P::ignored("SUPPLEMENTARY CONSTRAINTS", "node-to-surface contact has one point per secondary node"),
-            P::refused("TIED", "tied contact is not solved"),
-            P::refused("GEOMETRIC CORRECTION", "the primary surface is used as meshed"),
-            P::refused("MINIMUM DISTANCE", "the distances of the mesh are used"),
-            P::refused("MECHANICAL CONSTRAINT", "explicit contact is not solved"),
-            P::refused("WEIGHT", "explicit contact is not solved"),
-            P::refused("OP", "a pair acts in every step"),
         ],
     ),
 ];

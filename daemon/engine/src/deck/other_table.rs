@@ -2,7 +2,7 @@
 //!
 //! Reading also accepts unique beginnings of keywords; the list is long so that few beginnings are mistaken.
 
-use super::keywords::{DataLines, Effect, Keyword, Placement};
+use super::keywords::{DataLines, Effect, Keyword, Parameter as P, Placement};
 
 const STATIC: Effect = Effect::Refused("only static steps are solved; replace the procedure by *STATIC");
 const FLAT: Effect = Effect::Refused("write the deck without parts and assemblies");
@@ -17,6 +17,17 @@ const LOADS: Effect = Effect::Refused("loads are *BOUNDARY, *CLOAD, *DLOAD (P1 t
 const CONTACT: Effect = Effect::Refused(
     "contact is described by *CONTACT PAIR, TYPE=NODE TO SURFACE with *SURFACE INTERACTION and *SURFACE BEHAVIOR (HARD, LINEAR, TABULAR, EXPONENTIAL)",
 );
+const PENETRATION: Effect = Effect::Refused(
+    "fluid pressure does not follow the opening of contact: apply it with *DSLOAD to the faces that are wetted",
+);
+const INTERFACE: Effect = Effect::Refused(
+    "slide lines and contact elements with faces are not solved: describe the contact by *CONTACT PAIR, or point by point by *GAP",
+);
+const DEBOND: Effect =
+    Effect::Refused("bonds that break are not solved: remove it, or bond the surfaces for good with *EQUATION");
+const MESH_STAYS: Effect = Effect::Refused("displacements are small and the mesh stays as it is: remove it");
+const GENERAL_CONTACT: Effect =
+    Effect::Refused("general contact is not solved: name every two surfaces that may meet by *CONTACT PAIR");
 const ISOTROPIC: Effect = Effect::Ignored("the material is isotropic and stresses are written in global directions");
 const NO_HEAT: Effect = Effect::Ignored("temperatures are not solved for and have no effect on the elastic answer");
 const NO_DAMPING: Effect = Effect::Ignored("damping has no effect in a static step");
@@ -35,6 +46,11 @@ const fn other(name: &'static str, effect: Effect) -> Keyword {
     }
 }
 
+/// A keyword that is refused, but whose parameters are looked at: combinations with it may be forbidden.
+const fn noted(name: &'static str, effect: Effect, parameters: &'static [P]) -> Keyword {
+    Keyword { parameters, ..other(name, effect) }
+}
+
 /// Whether a keyword that is not read may have defined nodes, elements or names that other lines use.
 pub fn defines_names_unseen(keyword: &Keyword) -> bool {
     keyword.effect == FLAT || keyword.effect == PLAIN_NODES
@@ -51,7 +67,7 @@ pub const OTHER: &[Keyword] = &[
     other("*COUPLED THERMAL-ELECTRICAL", STATIC),
     other("*CRACK PROPAGATION", STATIC),
     other("*DIRECT CYCLIC", STATIC),
-    other("*DYNAMIC", STATIC),
+    noted("*DYNAMIC", STATIC, &[P::optional("EXPLICIT")]),
     other("*ELECTROMAGNETICS", STATIC),
     other("*FEASIBLE DIRECTION", STATIC),
     other("*FREQUENCY", STATIC),
@@ -77,10 +93,10 @@ pub const OTHER: &[Keyword] = &[
     other("*INSTANCE", FLAT),
     other("*PART", FLAT),
     other("*SYSTEM", FLAT),
-    other("*ADAPTIVE MESH", PLAIN_NODES),
-    other("*ADAPTIVE MESH CONSTRAINT", PLAIN_NODES),
-    other("*ADAPTIVE MESH CONTROLS", PLAIN_NODES),
-    other("*ADAPTIVE MESH REFINEMENT", PLAIN_NODES),
+    other("*ADAPTIVE MESH", MESH_STAYS),
+    other("*ADAPTIVE MESH CONSTRAINT", MESH_STAYS),
+    other("*ADAPTIVE MESH CONTROLS", MESH_STAYS),
+    other("*ADAPTIVE MESH REFINEMENT", MESH_STAYS),
     other("*CYCLIC SYMMETRY MODEL", PLAIN_NODES),
     other("*ELCOPY", PLAIN_NODES),
     other("*ELEMENT MATRIX", PLAIN_NODES),
@@ -95,7 +111,6 @@ pub const OTHER: &[Keyword] = &[
     other("*INSTANCE TRANSFORM", PLAIN_NODES),
     other("*MATRIX ASSEMBLE", PLAIN_NODES),
     other("*MATRIX INPUT", PLAIN_NODES),
-    other("*MODEL CHANGE", PLAIN_NODES),
     other("*NCOPY", PLAIN_NODES),
     other("*NETWORK STIFFNESS", PLAIN_NODES),
     other("*NFILL", PLAIN_NODES),
@@ -152,7 +167,7 @@ pub const OTHER: &[Keyword] = &[
     other("*GASKET SECTION", SOLIDS),
     other("*HEATCAP", SOLIDS),
     other("*INERTIA RELIEF", SOLIDS),
-    other("*INTERFACE", SOLIDS),
+    noted("*INTERFACE", INTERFACE, &[P::optional("ELSET")]),
     other("*JOINT", SOLIDS),
     other("*KINEMATIC", SOLIDS),
     other("*KINEMATIC COUPLING", SOLIDS),
@@ -165,6 +180,7 @@ pub const OTHER: &[Keyword] = &[
     other("*NORMAL", SOLIDS),
     other("*PRE-TENSION SECTION", SOLIDS),
     other("*RELEASE", SOLIDS),
+    noted("*RIGID BODY", SOLIDS, &[P::optional("ELSET")]),
     other("*RIGID SURFACE", SOLIDS),
     other("*ROTARY INERTIA", SOLIDS),
     other("*SECTION CONTROLS", SOLIDS),
@@ -253,7 +269,7 @@ pub const OTHER: &[Keyword] = &[
     other("*LOAD CASE", LOADS),
     other("*MASS FLOW", LOADS),
     other("*MASS FLOW RATE", LOADS),
-    other("*PRESSURE PENETRATION", LOADS),
+    other("*PRESSURE PENETRATION", PENETRATION),
     other("*PRESSURE STRESS", LOADS),
     other("*RADIATE", LOADS),
     other("*SFILM", LOADS),
@@ -261,25 +277,21 @@ pub const OTHER: &[Keyword] = &[
     other("*SRADIATE", LOADS),
     other("*TEMPERATURE", LOADS),
     other("*WIND", LOADS),
-    other("*CHANGE FRICTION", CONTACT),
     other("*CHANGE SURFACE BEHAVIOR", CONTACT),
-    other("*CLEARANCE", CONTACT),
     other("*COHESIVE BEHAVIOR", CONTACT),
     other("*CONSTRAINT", CONTACT),
-    other("*CONTACT", CONTACT),
-    other("*CONTACT CLEARANCE", CONTACT),
-    other("*CONTACT CLEARANCE ASSIGNMENT", CONTACT),
-    other("*CONTACT CONTROLS", CONTACT),
-    other("*CONTACT CONTROLS ASSIGNMENT", CONTACT),
-    other("*CONTACT EXCLUSIONS", CONTACT),
-    other("*CONTACT FORMULATION", CONTACT),
-    other("*CONTACT INCLUSIONS", CONTACT),
-    other("*CONTACT INITIALIZATION ASSIGNMENT", CONTACT),
-    other("*CONTACT INITIALIZATION DATA", CONTACT),
-    other("*CONTACT INTERFERENCE", CONTACT),
-    other("*CONTACT PROPERTY ASSIGNMENT", CONTACT),
-    other("*CONTACT STABILIZATION", CONTACT),
-    other("*DEBOND", CONTACT),
+    other("*CONTACT", GENERAL_CONTACT),
+    other("*CONTACT CLEARANCE", GENERAL_CONTACT),
+    other("*CONTACT CLEARANCE ASSIGNMENT", GENERAL_CONTACT),
+    other("*CONTACT CONTROLS ASSIGNMENT", GENERAL_CONTACT),
+    other("*CONTACT EXCLUSIONS", GENERAL_CONTACT),
+    other("*CONTACT FORMULATION", GENERAL_CONTACT),
+    other("*CONTACT INCLUSIONS", GENERAL_CONTACT),
+    other("*CONTACT INITIALIZATION ASSIGNMENT", GENERAL_CONTACT),
+    other("*CONTACT INITIALIZATION DATA", GENERAL_CONTACT),
+    other("*CONTACT PROPERTY ASSIGNMENT", GENERAL_CONTACT),
+    other("*CONTACT STABILIZATION", GENERAL_CONTACT),
+    noted("*DEBOND", DEBOND, &[P::optional("SLAVE"), P::optional("MASTER")]),
     other("*DESIGN PARAMETER", CONTACT),
     other("*DESIGN RESPONSE", CONTACT),
     other("*DESIGN VARIABLES", CONTACT),

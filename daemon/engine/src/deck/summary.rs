@@ -2,8 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::law::{NormalBehavior, PressureOverclosure};
-use crate::model::{ContactPair, Model, Procedure, SurfaceId, SurfaceKind};
+use crate::law::{NormalBehavior, PressureOverclosure, Separation};
+use crate::model::{
+    AllowedOverclosure, ContactControls, ContactPair, Enforcement, Friction, Model, PairMembers, PenetrationTolerance,
+    Procedure, StepContact, SurfaceId, SurfaceInteraction, SurfaceKind,
+};
 
 /// Counts of nodes, elements, sets, contact pairs with their faces and nodes, and steps. Ends with a newline.
 pub fn summary(model: &Model) -> String {
@@ -41,6 +44,12 @@ pub fn summary(model: &Model) -> String {
                 step.loads.len()
             ),
         );
+        for (index, pair) in model.pairs.iter().enumerate() {
+            let changes = describe_changes(model, &step.contact, index, pair);
+            if !changes.is_empty() {
+                line("", format!("{}: {}", pair.name, changes.join("; ")));
+            }
+        }
     }
     text
 }
@@ -65,25 +74,90 @@ fn join<'a>(names: impl Iterator<Item = &'a str>) -> String {
 }
 
 fn describe_pair(model: &Model, pair: &ContactPair) -> String {
-    let interaction = &model.interactions[pair.interaction.index()];
-    let law = match &interaction.normal {
-        NormalBehavior::Hard => "hard",
-        NormalBehavior::Softened(PressureOverclosure::Linear(_)) => "linear",
-        NormalBehavior::Softened(PressureOverclosure::Tabular(_)) => "tabular",
-        NormalBehavior::Softened(PressureOverclosure::Exponential(_)) => "exponential",
-        NormalBehavior::Softened(PressureOverclosure::CalculixExponential(_)) => "exponential of CalculiX",
+    let behavior = describe_interaction(&model.interactions[pair.interaction.index()]);
+    let surfaces = match &pair.members {
+        PairMembers::Surfaces(surfaces) => surfaces,
+        PairMembers::Gaps(gaps) => return format!("{}: {} contact elements; {behavior}", pair.name, gaps.len()),
     };
-    let Some(surfaces) = pair.surfaces() else { return format!("{}: {law}", pair.name) };
-    let adjusted = match surfaces.adjust {
-        Some(adjust) => format!("; ADJUST moved {} nodes by up to {:.4e}", adjust.moved, adjust.distance_max),
-        None => String::new(),
-    };
-    format!(
-        "{}: secondary {}; primary {}; {law}{adjusted}",
+    let mut text = format!(
+        "{}: secondary {}; primary {}; {behavior}",
         pair.name,
         describe_surface(model, surfaces.secondary),
         describe_surface(model, surfaces.primary)
-    )
+    );
+    // Writing into a string cannot fail.
+    if let Some(adjust) = surfaces.adjust {
+        let _ = write!(text, "; ADJUST moved {} nodes by up to {:.4e}", adjust.moved, adjust.distance_max);
+    }
+    if !surfaces.clearances.is_empty() {
+        let _ = write!(text, "; clearances of {} nodes are given", surfaces.clearances.len());
+    }
+    text
+}
+
+fn describe_interaction(interaction: &SurfaceInteraction) -> String {
+    let mut text = match (&interaction.normal, &interaction.enforcement) {
+        (NormalBehavior::Hard, Enforcement::Lagrange) => "hard",
+        (NormalBehavior::Hard, Enforcement::AugmentedLagrange(_)) => "hard by augmented Lagrange",
+        (NormalBehavior::Hard, Enforcement::Penalty(_)) => "hard by linear penalty",
+        (NormalBehavior::Hard, Enforcement::NonlinearPenalty(_)) => "hard by nonlinear penalty",
+        (NormalBehavior::Softened(PressureOverclosure::Linear(_)), _) => "linear",
+        (NormalBehavior::Softened(PressureOverclosure::Tabular(_)), _) => "tabular",
+        (NormalBehavior::Softened(PressureOverclosure::Exponential(_)), _) => "exponential",
+        (NormalBehavior::Softened(PressureOverclosure::CalculixExponential(_)), _) => "exponential of CalculiX",
+    }
+    .to_string();
+    if interaction.separation == Separation::Prevented {
+        text.push_str(", no separation");
+    }
+    if interaction.friction == Friction::Rough {
+        text.push_str(", rough friction");
+    }
+    if let Some(damping) = interaction.damping {
+        let _ = write!(text, ", damped below a clearance of {}", damping.clearance);
+    }
+    text
+}
+
+/// What a step says about a pair that is not the default.
+fn describe_changes(model: &Model, contact: &StepContact, index: usize, pair: &ContactPair) -> Vec<String> {
+    if !contact.is_active(index) {
+        return vec!["removed".into()];
+    }
+    let mut changes = Vec::new();
+    let (controls, default) = (contact.controls_of(index), ContactControls::default());
+    let interaction = &model.interactions[pair.interaction.index()];
+    if let Some(friction) = contact.frictions.get(index).filter(|friction| **friction != interaction.friction) {
+        changes.push(match friction {
+            Friction::None => "frictionless".to_string(),
+            Friction::Rough => "rough friction".to_string(),
+        });
+    }
+    if let Some(interference) = contact.interference_of(index) {
+        changes.push(match interference.allowed {
+            AllowedOverclosure::Initial => "interference of the start resolved gradually".to_string(),
+            AllowedOverclosure::Uniform(value) => format!("interference of {value} allowed"),
+        });
+    }
+    if controls.penetration_tolerance != default.penetration_tolerance {
+        changes.push(match controls.penetration_tolerance {
+            PenetrationTolerance::Absolute(value) => format!("penetration up to {value}"),
+            PenetrationTolerance::Relative(value) => format!("penetration up to {value} of the characteristic length"),
+        });
+    }
+    if controls.stiffness_scale != default.stiffness_scale {
+        changes.push(format!("penalty stiffness times {}", controls.stiffness_scale));
+    }
+    if let Some(modified) = controls.modified {
+        changes.push(format!(
+            "modified hard: up to {} points with a tension up to {} or an overclosure up to {}",
+            modified.points_max, modified.tension_max, modified.overclosure_max
+        ));
+    }
+    if controls.stabilization.is_some() {
+        changes.push("stabilized by damping".into());
+    }
+    changes
 }
 
 fn describe_surface(model: &Model, surface: SurfaceId) -> String {

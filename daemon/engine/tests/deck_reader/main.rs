@@ -2,7 +2,10 @@
 
 mod adjust;
 mod base;
+mod combinations;
 mod connectors;
+mod contact;
+mod contact_steps;
 mod damage;
 mod equations;
 mod restart;

@@ -5,9 +5,11 @@ use crate::model::{Dialect, InteractionId};
 
 use super::super::card::Card;
 use super::super::data::Row;
+use super::super::facts::Law;
+use super::super::lex::real;
 use super::super::report::At;
 use super::Builder;
-use super::enforcement::{AskedNormal, SoftenedLaw};
+use super::enforcement::AskedNormal;
 
 const BEHAVIOR: &str = "*SURFACE BEHAVIOR";
 
@@ -18,14 +20,15 @@ impl Builder<'_> {
         let word = card.parameters.word("PRESSURE-OVERCLOSURE");
         let asked = AskedNormal {
             softened: match word.as_str() {
-                "LINEAR" => Some(SoftenedLaw::Linear),
-                "TABULAR" => Some(SoftenedLaw::Tabular),
-                "EXPONENTIAL" => Some(SoftenedLaw::Exponential),
+                "LINEAR" => Some(Law::Linear),
+                "TABULAR" => Some(Law::Tabular),
+                "EXPONENTIAL" => Some(Law::Exponential),
                 _ => None,
             },
             augmented: card.parameters.has("AUGMENTED LAGRANGE"),
             penalty: card.parameters.has("PENALTY"),
             no_separation: card.parameters.has("NO SEPARATION"),
+            table_start: table_start(card),
         };
         self.interaction_lines[id.index()].asked = asked;
         if asked.no_separation {
@@ -41,29 +44,20 @@ impl Builder<'_> {
             self.model.interactions[id.index()].enforcement = enforcement;
             return !card.faulty;
         };
-        for (is_asked, option) in [
-            (asked.no_separation, "NO SEPARATION"),
-            (asked.augmented, "AUGMENTED LAGRANGE"),
-            (asked.penalty, "PENALTY"),
-        ] {
-            if is_asked {
-                let message = format!("the {} law cannot be combined with {option}", law.name());
-                self.report.error(card.at, BEHAVIOR, message, "choose one of the two");
-                return false;
-            }
-        }
+        let beside_others = asked.no_separation || asked.augmented || asked.penalty;
         if card.faulty {
             return false;
         }
         let parameters = match law {
-            SoftenedLaw::Linear => self.linear(card),
-            SoftenedLaw::Tabular => self.tabular(card),
-            SoftenedLaw::Exponential => self.exponential(card),
+            Law::Linear => self.linear(card),
+            Law::Tabular => self.tabular(card),
+            Law::Exponential => self.exponential(card),
         };
         match parameters.map(PressureOverclosure::try_from) {
             Some(Ok(law)) => {
                 self.model.interactions[id.index()].normal = NormalBehavior::Softened(law);
-                true
+                // What may not stand beside a law is reported with the combinations.
+                !beside_others
             }
             Some(Err(_)) | None => false,
         }
@@ -161,6 +155,16 @@ impl Builder<'_> {
         }
         violations.is_empty().then_some(parameters)
     }
+}
+
+/// First point of a table, if it can be read.
+fn table_start(card: &Card) -> Option<(f64, f64)> {
+    let row = card.first_line().filter(|_| card.parameters.word("PRESSURE-OVERCLOSURE") == "TABULAR")?.row(BEHAVIOR);
+    let item = |index| match row.text(index) {
+        "" => Some(0.0),
+        text => real(text.as_bytes()).ok(),
+    };
+    Some((item(0)?, item(1)?))
 }
 
 fn items(count: usize) -> String {

@@ -3,6 +3,7 @@
 use crate::model::{ContactDamping, InteractionId};
 
 use super::super::card::Card;
+use super::super::facts::DampingKind;
 use super::super::lex::real;
 use super::super::report::excerpt;
 use super::Builder;
@@ -14,10 +15,10 @@ impl Builder<'_> {
     pub(super) fn contact_damping(&mut self, card: &Card, interaction: InteractionId) -> bool {
         let tangent_fraction = self.tangent_fraction(card, DAMPING, 0.0);
         if card.parameters.word("DEFINITION") == "CRITICALDAMPINGFRACTION" {
-            let message = "the critical damping fraction is available in explicit analyses only";
-            self.report.error(card.at, DAMPING, message, "give DEFINITION=DAMPING COEFFICIENT");
-            return false;
+            self.interaction_lines[interaction.index()].damping_kind = Some(DampingKind::CriticalFraction);
+            return false; // Whether it is offered is reported with the combinations.
         }
+        self.interaction_lines[interaction.index()].damping_kind = Some(DampingKind::Coefficient);
         let what =
             "damping coefficient, clearance from which on nothing is damped, part of it with the full coefficient";
         let Some(row) = card.single_row(what, self.report) else { return false };

@@ -4,49 +4,30 @@ use crate::model::{Enforcement, LinearPenalty, NonlinearPenalty};
 
 use super::super::card::Card;
 use super::super::data::Row;
+use super::super::facts::Law;
 use super::Builder;
 
 const BEHAVIOR: &str = "*SURFACE BEHAVIOR";
 
 /// What `*SURFACE BEHAVIOR` asks for, sound or not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AskedNormal {
     /// The law; none: hard.
-    pub softened: Option<SoftenedLaw>,
+    pub softened: Option<Law>,
     /// `AUGMENTED LAGRANGE`.
     pub augmented: bool,
     /// `PENALTY`.
     pub penalty: bool,
     /// `NO SEPARATION`.
     pub no_separation: bool,
+    /// First point of a table as written: pressure, overclosure.
+    pub table_start: Option<(f64, f64)>,
 }
 
 impl AskedNormal {
     /// Hard contact that may separate, enforced by multipliers.
     pub fn is_plain_hard(self) -> bool {
         self == Self::default()
-    }
-}
-
-/// Softened laws by their name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SoftenedLaw {
-    /// `LINEAR`.
-    Linear,
-    /// `TABULAR`.
-    Tabular,
-    /// `EXPONENTIAL`.
-    Exponential,
-}
-
-impl SoftenedLaw {
-    /// The law in a sentence.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Linear => "linear",
-            Self::Tabular => "tabular",
-            Self::Exponential => "exponential",
-        }
     }
 }
 

@@ -4,6 +4,7 @@ use crate::law::NormalBehavior;
 use crate::model::{Dialect, InteractionId, SurfaceInteraction};
 
 use super::super::card::Card;
+use super::super::facts::DampingKind;
 use super::super::keywords::Placement;
 use super::super::report::At;
 use super::Builder;
@@ -25,6 +26,8 @@ pub struct InteractionLines {
     pub behavior: Option<At>,
     /// `*CONTACT DAMPING`.
     pub damping: Option<At>,
+    /// Its DEFINITION.
+    pub damping_kind: Option<DampingKind>,
     /// `*FRICTION`.
     pub friction: Option<At>,
     /// What `*SURFACE BEHAVIOR` asks for.
@@ -38,7 +41,7 @@ impl Builder<'_> {
     /// [`Builder::element_interaction`].
     pub(super) fn build_interactions(&mut self, layout: &Layout<'_>) {
         let mut open = None;
-        for card in &layout.model {
+        for card in layout.model.iter().chain(&layout.explicit) {
             open = self.interaction_or_option(card, open);
         }
         for (name, id) in (0..).zip(&self.interaction_names) {
@@ -143,6 +146,7 @@ impl Builder<'_> {
             at: card.at,
             behavior: None,
             damping: None,
+            damping_kind: None,
             friction: None,
             asked: AskedNormal::default(),
             faulty,

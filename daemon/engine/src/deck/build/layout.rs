@@ -2,6 +2,7 @@
 
 use super::super::card::Card;
 use super::super::keywords::{Effect, Placement};
+use super::super::lex::key;
 use super::super::report::{At, Report};
 
 /// Cards by the part of the deck that they stand in.
@@ -9,6 +10,8 @@ use super::super::report::{At, Report};
 pub struct Layout<'d> {
     /// Before the first `*STEP`.
     pub model: Vec<&'d Card>,
+    /// Interactions and pairs in explicit steps, where they may stand.
+    pub explicit: Vec<&'d Card>,
     /// Steps in order.
     pub steps: Vec<StepCards<'d>>,
     /// All cards, in order.
@@ -82,10 +85,22 @@ impl<'d> Layout<'d> {
         let model_only =
             matches!(card.keyword.placement, Placement::Model | Placement::Material | Placement::Interaction);
         if in_step {
-            let behind_refused =
-                self.steps.last().and_then(|step| step.cards.last()).is_some_and(|card| is_refused(card));
-            if card.keyword.placement == Placement::Interaction && behind_refused {
-                // *CHANGE FRICTION and *CHANGE SURFACE BEHAVIOR are refused, and this card belongs to them.
+            let before = self.steps.last().and_then(|step| step.cards.last()).copied();
+            if card.keyword.placement == Placement::Interaction {
+                if before.is_some_and(|before| before.keyword.name == "*CHANGE SURFACE BEHAVIOR") {
+                    return; // That is refused, and this card belongs to it.
+                }
+                if let (Some("*CHANGE FRICTION"), "*FRICTION", Some(step)) =
+                    (before.map(|before| before.keyword.name), name, self.steps.last_mut())
+                {
+                    step.cards.push(card);
+                    return;
+                }
+            }
+            let is_contact = card.keyword.placement == Placement::Interaction
+                || matches!(name, "*SURFACE INTERACTION" | "*CONTACT PAIR");
+            if is_contact && self.steps.last().is_some_and(StepCards::is_explicit) {
+                self.explicit.push(card);
                 return;
             }
             if model_only {
@@ -119,9 +134,33 @@ impl Layout<'_> {
     pub fn has_refused_keywords(&self) -> bool {
         self.all.iter().any(is_refused)
     }
+
+    /// Every `*CONTACT PAIR`, wherever it may stand.
+    pub fn contact_pairs(&self) -> impl Iterator<Item = &'_ Card> {
+        self.model.iter().chain(&self.explicit).copied().filter(|card| card.keyword.name == "*CONTACT PAIR")
+    }
+
+    /// Every `*DEBOND`.
+    pub fn debonds(&self) -> impl Iterator<Item = &'_ Card> {
+        self.all.iter().filter(|card| card.keyword.name == "*DEBOND")
+    }
+
+    /// `*SURFACE` of a name.
+    pub fn surface(&self, name: &str) -> Option<&'_ Card> {
+        let is_it = |card: &&Card| {
+            card.keyword.name == "*SURFACE"
+                && card.parameters.value("NAME").is_some_and(|other| key(other) == key(name))
+        };
+        self.all.iter().find(is_it)
+    }
 }
 
 impl StepCards<'_> {
+    /// Whether the procedure is `*DYNAMIC, EXPLICIT`.
+    pub fn is_explicit(&self) -> bool {
+        self.cards.iter().any(|card| card.keyword.name == "*DYNAMIC" && card.parameters.has("EXPLICIT"))
+    }
+
     /// Whether a keyword of the step was refused: it may have been the procedure.
     pub fn has_refused_keywords(&self) -> bool {
         self.cards.iter().any(|card| is_refused(card))

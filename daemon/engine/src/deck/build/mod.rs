@@ -3,6 +3,10 @@
 mod adjust;
 mod behavior;
 mod budget;
+mod clearance;
+mod combinations;
+mod contact_history;
+mod controls;
 mod damping;
 mod enforcement;
 mod equations;
@@ -23,7 +27,7 @@ mod sets;
 mod steps;
 mod surfaces;
 
-use crate::model::{Boundary, Dialect, InteractionId, Model, Region, SurfaceKind};
+use crate::model::{Boundary, Dialect, InteractionId, Model, Region, SurfaceId, SurfaceKind};
 
 use super::card::Deck;
 use super::report::{At, Report};
@@ -62,6 +66,10 @@ struct Builder<'r> {
     equation_at: Vec<At>,
     /// Names of the contact pairs.
     pairs: FxHashSet<String>,
+    /// Surfaces of pairs that are wrong, about which enough has been said.
+    faulty_pairs: FxHashSet<(SurfaceId, SurfaceId)>,
+    /// Positions of pairs without SMALL SLIDING.
+    finite_sliding: FxHashSet<usize>,
     /// Values before the first step, which CalculiX reaches over it.
     early_boundaries: Vec<(At, Boundary)>,
     /// Lines of the contact pairs.
@@ -98,6 +106,8 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         budget: Budget::of(entities),
         equation_at: Vec::new(),
         pairs: FxHashSet::default(),
+        faulty_pairs: FxHashSet::default(),
+        finite_sliding: FxHashSet::default(),
         early_boundaries: Vec::new(),
         pair_at: Vec::new(),
         step_lines: Vec::new(),
@@ -116,11 +126,13 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_pairs(&layout);
     builder.build_gaps(&layout);
     builder.build_amplitudes(&layout);
+    builder.build_clearances(&layout);
     builder.build_initial_boundaries(&layout);
     builder.build_steps(&layout);
     builder.check_prescribed(&layout);
     builder.check_equations();
     builder.check_loads();
+    builder.check_combinations(&layout);
     if !layout.has_refused_keywords() {
         builder.check_unused();
     }

@@ -49,6 +49,7 @@ impl Builder<'_> {
             }
             let extension_zone = self.extension_zone(card.parameters.value("EXTENSION ZONE"), card.at);
             let adjust = self.adjust_parameter(card);
+            let hcrit = self.hcrit(card.parameters.value("HCRIT"), card.at);
             for line in card.lines().iter() {
                 let row = line.row(PAIR);
                 let (secondary, primary) =
@@ -63,8 +64,8 @@ impl Builder<'_> {
                 }
                 let (Some(secondary), Some(primary)) = (secondary, primary) else { continue };
                 if self.pair_is_sound(&row, secondary, primary)
-                    && let (Some(interaction), Some(extension_zone), Ok(adjust), false) =
-                        (interaction, extension_zone, adjust, card.faulty)
+                    && let (Some(interaction), Some(extension_zone), Ok(adjust), Ok(hcrit), false) =
+                        (interaction, extension_zone, adjust, hcrit, card.faulty)
                 {
                     let place = self.map.place(row.at);
                     let name = self.pair_name(secondary, primary);
@@ -73,11 +74,16 @@ impl Builder<'_> {
                         secondary,
                         primary,
                         extension_zone,
-                        hcrit: None,
+                        hcrit,
                         adjust,
                         clearances,
                     });
+                    if !card.parameters.has("SMALL SLIDING") {
+                        self.finite_sliding.insert(self.model.pairs.len());
+                    }
                     self.push_pair(ContactPair { name, members, interaction, place }, row.at);
+                } else {
+                    self.faulty_pairs.insert((secondary, primary));
                 }
             }
         }
@@ -185,6 +191,19 @@ impl Builder<'_> {
                     "give the part of a face by which the primary surface is extended",
                 );
                 None
+            }
+        }
+    }
+
+    /// HCRIT: a positive length; `Err` when it is not, which is reported.
+    fn hcrit(&mut self, text: Option<&str>, at: At) -> Result<Option<f64>, ()> {
+        let Some(text) = text else { return Ok(None) };
+        match real(text.as_bytes()) {
+            Ok(length) if length > 0.0 => Ok(Some(length)),
+            _ => {
+                let message = format!("HCRIT={text}: not a positive length");
+                self.report.error(at, PAIR, message, "give the overclosure beyond which an increment is not accepted");
+                Err(())
             }
         }
     }

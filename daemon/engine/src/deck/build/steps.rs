@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::model::{Procedure, StaticControl, Step, StepContact};
+use crate::model::{Procedure, StaticControl, Step};
 
 use super::super::card::Card;
 use super::super::data::Row;
@@ -23,6 +23,7 @@ impl Builder<'_> {
     pub(super) fn build_steps(&mut self, layout: &Layout<'_>) {
         let mut names = FxHashSet::default();
         let mut requests = Requests::default();
+        let mut contact = self.contact_history();
         for card in layout.model.iter().filter(|card| card.keyword.name == "*RESTART") {
             self.restart_request(card, &mut requests);
         }
@@ -60,6 +61,7 @@ impl Builder<'_> {
                 });
             }
             let (loads, load_lines, loads_removed) = self.step_loads(cards);
+            let step_contact = self.step_contact(cards, position as u32, &mut contact);
             self.output_requests(cards, &mut requests);
             if !self.budget.take(requests.len(), opening.at, STEP, self.report) {
                 return;
@@ -73,7 +75,7 @@ impl Builder<'_> {
                 boundaries,
                 loads,
                 loads_removed,
-                contact: StepContact::default(),
+                contact: step_contact,
                 output: requests.all(self.model.dialect),
                 place: self.map.place(opening.at),
             });

@@ -1,0 +1,234 @@
+//! Combinations of contact options against the tables of availability and rules, for every procedure that the deck asks for.
+
+use crate::diagnostic::Severity;
+use crate::model::{InteractionId, SurfaceKind};
+
+use super::super::availability::{Blame, FEATURES, Family, Feature, Offer};
+use super::super::card::{Body, Card};
+use super::super::facts::Facts;
+use super::super::lex::{key, real, unquoted};
+use super::super::report::At;
+use super::super::rules::{RULES, Rule};
+use super::Builder;
+use super::layout::{Layout, StepCards};
+
+/// What the deck as a whole says about its procedures.
+struct Procedures {
+    standard: bool,
+    explicit: bool,
+    general_contact: bool,
+    adaptive_mesh: bool,
+}
+
+impl Procedures {
+    fn of(layout: &Layout<'_>) -> Self {
+        let has = |names: &[&str]| layout.all.iter().any(|card| names.contains(&card.keyword.name));
+        let explicit = layout.steps.iter().any(StepCards::is_explicit);
+        Self {
+            standard: !explicit || layout.steps.iter().any(|step| !step.is_explicit()),
+            explicit,
+            general_contact: has(&["*CONTACT", "*CONTACT INCLUSIONS", "*CONTACT PROPERTY ASSIGNMENT"]),
+            adaptive_mesh: has(&["*ADAPTIVE MESH"]),
+        }
+    }
+}
+
+/// Lines that a finding may be about.
+struct Lines<'l> {
+    behavior: At,
+    damping: At,
+    other: Option<&'l Card>,
+}
+
+impl Builder<'_> {
+    /// Reports every combination that the tables forbid.
+    pub(super) fn check_combinations(&mut self, layout: &Layout<'_>) {
+        let procedures = Procedures::of(layout);
+        let pair_cards: Vec<&Card> = layout.contact_pairs().collect();
+        let mut reported = Vec::new();
+        for index in 0..self.interaction_lines.len() {
+            let id = InteractionId(index as u32);
+            let name = key(&self.model.interactions[index].name);
+            let of_surfaces = self.interaction_lines[index].keyword == "*SURFACE INTERACTION";
+            let pairs: Vec<&Card> = (pair_cards.iter().copied())
+                .filter(|card| {
+                    of_surfaces && card.parameters.value("INTERACTION").is_some_and(|used| key(used) == name)
+                })
+                .collect();
+            for family in families(&procedures, of_surfaces, !pairs.is_empty()) {
+                let facts = self.interaction_facts(id, family, &procedures);
+                let lines = &self.interaction_lines[index];
+                let lines = Lines {
+                    behavior: lines.behavior.unwrap_or(lines.at),
+                    damping: lines.damping.unwrap_or(lines.at),
+                    other: None,
+                };
+                if pairs.is_empty() {
+                    let debonding = !of_surfaces && layout.debonds().next().is_some();
+                    self.judge(&Facts { debonding, ..facts }, &lines, &mut reported);
+                }
+                for pair in &pairs {
+                    for facts in self.pair_facts(facts, pair, layout) {
+                        self.judge(&facts, &Lines { other: Some(pair), ..lines }, &mut reported);
+                    }
+                }
+            }
+        }
+        for step in &layout.steps {
+            let family = if step.is_explicit() { Family::ExplicitPairs } else { Family::StandardSurfaces };
+            for card in &step.cards {
+                let modified_hard = card.keyword.name == "*CONTACT CONTROLS"
+                    && ["MAXCHP", "PERRMX", "UERRMX"].iter().any(|name| card.parameters.has(name));
+                let penetration = card.keyword.name == "*PRESSURE PENETRATION";
+                let facts = Facts { modified_hard, penetration, ..Facts::of(family) };
+                let lines = Lines { behavior: card.at, damping: card.at, other: Some(card) };
+                self.judge(&facts, &lines, &mut reported);
+            }
+        }
+    }
+
+    fn interaction_facts(&self, id: InteractionId, family: Family, procedures: &Procedures) -> Facts {
+        let lines = &self.interaction_lines[id.index()];
+        Facts {
+            law: lines.asked.softened,
+            is_interaction: true,
+            augmented: lines.asked.augmented,
+            penalty: lines.asked.penalty,
+            no_separation: lines.asked.no_separation,
+            table_start: lines.asked.table_start,
+            damping: lines.damping_kind,
+            kinematic: family == Family::ExplicitPairs,
+            adaptive_mesh: procedures.adaptive_mesh,
+            ..Facts::of(family)
+        }
+    }
+
+    /// Facts of an interaction for each pair of a `*CONTACT PAIR` card.
+    fn pair_facts(&self, facts: Facts, card: &Card, layout: &Layout<'_>) -> Vec<Facts> {
+        let kinematic = facts.kinematic && card.parameters.word("MECHANICAL CONSTRAINT") != "PENALTY";
+        let weight = card.parameters.value("WEIGHT").and_then(|text| real(text.as_bytes()).ok());
+        let rows = card.lines().iter().map(|line| line.row(card.keyword.name));
+        rows.map(|row| {
+            let [secondary, primary] = [0, 1].map(|item| unquoted(row.text(item)));
+            let is_pure = match weight {
+                Some(weight) => weight == 0.0 || weight == 1.0,
+                None => {
+                    self.is_of_nodes(secondary, layout)
+                        || self.is_rigid(secondary, layout)
+                        || self.is_rigid(primary, layout)
+                }
+            };
+            Facts {
+                kinematic,
+                balanced: facts.family == Family::ExplicitPairs && !is_pure,
+                rigid_secondary: self.is_rigid(secondary, layout),
+                debonding: layout.debonds().any(|debond| {
+                    let named = |parameter: &str, surface: &str| {
+                        debond.parameters.value(parameter).is_none_or(|name| key(name) == key(surface))
+                    };
+                    named("SLAVE", secondary) && named("MASTER", primary)
+                }),
+                ..facts
+            }
+        })
+        .collect()
+    }
+
+    fn is_of_nodes(&self, surface: &str, layout: &Layout<'_>) -> bool {
+        layout.surface(surface).is_some_and(|card| card.parameters.word("TYPE") == "NODE")
+    }
+
+    /// Whether a surface is analytical, or belongs to a rigid body.
+    fn is_rigid(&self, surface: &str, layout: &Layout<'_>) -> bool {
+        let Some(card) = layout.surface(surface) else { return false };
+        if matches!(card.parameters.word("TYPE").as_str(), "CYLINDER" | "REVOLUTION" | "SEGMENTS" | "USER") {
+            return true;
+        }
+        let rigid = layout.all.iter().filter(|card| card.keyword.name == "*RIGID BODY");
+        let sets: Vec<String> = rigid.filter_map(|card| card.parameters.value("ELSET").map(key)).collect();
+        let named =
+            matches!(&card.body, Body::Faces(faces) if faces.names.iter().any(|(name, ..)| sets.contains(&key(name))));
+        named || sets.iter().any(|set| self.has_face_of(surface, set))
+    }
+
+    fn has_face_of(&self, surface: &str, set: &str) -> bool {
+        let (Some(surface), Some(set)) = (self.surfaces.find(surface), self.element_sets.find(set)) else {
+            return false;
+        };
+        let surface = self.model.mesh.surfaces.get(surface as usize);
+        let Some(elements) = self.model.mesh.element_sets.get(set as usize) else { return false };
+        match surface.map(|surface| &surface.kind) {
+            Some(SurfaceKind::Faces(faces)) => faces.iter().any(|face| elements.elements.contains(&face.element)),
+            _ => false,
+        }
+    }
+
+    fn judge(&mut self, facts: &Facts, lines: &Lines<'_>, reported: &mut Vec<(At, &'static str, Family)>) {
+        for feature in FEATURES.iter().filter(|feature| (feature.is_asked)(facts)) {
+            if let Offer::No(reason) = feature.offer(facts.family)
+                && let Some((at, keyword)) = lines.blamed(feature.blame)
+                && is_new(reported, (at, feature.name, facts.family))
+            {
+                self.not_offered(feature, facts.family, reason, at, keyword);
+            }
+        }
+        for rule in RULES.iter().filter(|rule| rule.families.contains(&facts.family)) {
+            if rule.is_broken.is_some_and(|is_broken| is_broken(facts))
+                && let Some((at, keyword)) = lines.blamed(rule.blame)
+                && is_new(reported, (at, rule.reason, rule.families[0]))
+            {
+                self.break_rule(rule, at, keyword, facts.law_name());
+            }
+        }
+    }
+
+    fn not_offered(&mut self, feature: &Feature, family: Family, reason: &str, at: At, keyword: &str) {
+        let message = format!("{} is not available for {}: {reason}", feature.name, family.name());
+        self.report.error(at, keyword, message, feature.remedy);
+    }
+
+    /// Reports a broken rule; `law` is the softened law that it is about, if any.
+    pub(super) fn break_rule(&mut self, rule: &Rule, at: At, keyword: &str, law: &str) {
+        let message = rule.message(law);
+        match rule.severity {
+            Severity::Error => self.report.error(at, keyword, message, rule.remedy),
+            Severity::Warning => self.report.warning(at, keyword, message, rule.remedy),
+        }
+    }
+}
+
+/// Adds a finding to those that have been reported; whether it is new.
+fn is_new<T: PartialEq>(reported: &mut Vec<T>, finding: T) -> bool {
+    let is_new = !reported.contains(&finding);
+    if is_new {
+        reported.push(finding);
+    }
+    is_new
+}
+
+/// Families for which an interaction is meant.
+fn families(procedures: &Procedures, of_surfaces: bool, has_pairs: bool) -> Vec<Family> {
+    if !of_surfaces {
+        return vec![Family::StandardElements];
+    }
+    let mut found = Vec::new();
+    if procedures.standard {
+        found.push(Family::StandardSurfaces);
+    }
+    if procedures.general_contact && !has_pairs {
+        found.push(Family::ExplicitGeneral);
+    } else if procedures.explicit {
+        found.push(Family::ExplicitPairs);
+    }
+    found
+}
+
+impl Lines<'_> {
+    fn blamed(&self, blame: Blame) -> Option<(At, &'static str)> {
+        match blame {
+            Blame::Behavior => Some((self.behavior, "*SURFACE BEHAVIOR")),
+            Blame::Damping => Some((self.damping, "*CONTACT DAMPING")),
+            Blame::Controls | Blame::Penetration | Blame::Pair => self.other.map(|card| (card.at, card.keyword.name)),
+        }
+    }
+}
