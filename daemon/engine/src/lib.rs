@@ -41,4 +41,6 @@ mod load_pattern_tests;
 #[cfg(test)]
 mod patch_tests;
 #[cfg(test)]
+mod rigid_tests;
+#[cfg(test)]
 mod test_mesh;

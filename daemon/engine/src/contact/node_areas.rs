@@ -23,7 +23,8 @@ pub fn of_outer_faces(mesh: &Mesh, nodes: &[NodeId]) -> Vec<Option<f64>> {
     // a wanted node are at that node themselves, so the others need no look.
     let mut faces: BTreeMap<FaceKey, Face> = BTreeMap::new();
     for element in 0..mesh.elements.len() {
-        if !mesh.elements.nodes(element).iter().any(|n| wanted[n.index()]) {
+        let is_solid = mesh.elements.kind(element).is_solid();
+        if !is_solid || !mesh.elements.nodes(element).iter().any(|n| wanted[n.index()]) {
             continue;
         }
         for element_face in mesh.elements.faces_of(ElementId(element as u32)) {

@@ -145,10 +145,10 @@ impl<'a> Underlying<'a> {
         Some(all.sum::<f64>() / elements.len() as f64)
     }
 
-    /// `M` of a solid; none if it does not deform.
+    /// `M` of a solid; none if it is part of a rigid body.
     fn modulus(&self, element: ElementId) -> Option<f64> {
         let material = self.model.mesh.element_materials.get(element.index()).copied().unwrap_or(MaterialId::NONE);
-        self.moduli.get(material.index()).copied()
+        self.moduli.get(material.index()).copied().filter(|&m| m > 0.0)
     }
 
     fn volume(&self, element: ElementId) -> f64 {

@@ -43,12 +43,20 @@ impl Members {
     }
 }
 
+/// Face of a facet on the side of its normal, in place of a number.
+pub const SPOS: u8 = 7;
+/// Face of a facet on the other side.
+pub const SNEG: u8 = 8;
+
 impl Faces {
     /// Takes an element or element set and its face; the error says what is wrong, and the remedy.
     pub fn add(&mut self, region: &[u8], face: &[u8], at: At) -> Result<(), (String, &'static str)> {
         let face = match face {
             b"" => 0,
             [b'S' | b's', digit @ b'1'..=b'6'] => digit - b'0',
+            // Sides of a facet.
+            _ if face.eq_ignore_ascii_case(b"SPOS") => SPOS,
+            _ if face.eq_ignore_ascii_case(b"SNEG") => SNEG,
             _ => return Err((format!("no element has a face {}", excerpt(face)), FACE_REMEDY)),
         };
         if looks_numeric(region) {

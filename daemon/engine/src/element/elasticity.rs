@@ -16,8 +16,16 @@ impl Elasticity {
         Self { lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu: e / (2.0 * (1.0 + nu)) }
     }
 
+    /// Whether nothing resists: the material of solids of a rigid body.
+    pub fn is_zero(self) -> bool {
+        self.mu == 0.0 && self.lambda == 0.0
+    }
+
     /// Young's modulus [pressure].
     pub fn youngs_modulus(self) -> f64 {
+        if self.is_zero() {
+            return 0.0;
+        }
         self.mu * (3.0 * self.lambda + 2.0 * self.mu) / (self.lambda + self.mu)
     }
 

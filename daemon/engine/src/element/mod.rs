@@ -31,8 +31,12 @@ fn corners(coordinates: &[[f64; 3]]) -> &Corners {
     coordinates.try_into().expect("the element table gives an element as many nodes as its kind has")
 }
 
-/// Stiffness of an element, into `out`.
+/// Stiffness of an element, into `out`; zero for solids of a rigid body, whose material has none.
 pub fn stiffness(kind: ElementKind, coordinates: &[[f64; 3]], elasticity: Elasticity, out: &mut Stiffness) {
+    if elasticity.is_zero() {
+        out.clear(kind.node_count());
+        return;
+    }
     let brick = |volumetric| brick::stiffness(volumetric, corners(coordinates), elasticity);
     match kind {
         ElementKind::C3D8 => out.set(8, &brick(Volumetric::Mean)),
@@ -52,6 +56,10 @@ pub fn stiffness(kind: ElementKind, coordinates: &[[f64; 3]], elasticity: Elasti
 
 /// Stress (11, 22, 33, 12, 13, 23) at the integration points under nodal displacements [pressure].
 pub fn stress(kind: ElementKind, coordinates: &[[f64; 3]], elasticity: Elasticity, u: &[[f64; 3]]) -> Vec<[f64; 6]> {
+    if let (ElementKind::C3D8I, true) = (kind, elasticity.is_zero()) {
+        // The modes follow from equilibrium, which needs a stiffness.
+        return vec![[0.0; 6]; 8];
+    }
     let brick = |volumetric| brick::stress(volumetric, corners(coordinates), elasticity, corners(u));
     match kind {
         ElementKind::C3D8 => brick(Volumetric::Mean).to_vec(),

@@ -78,6 +78,10 @@ pub struct Mesh {
     pub element_sets: Vec<ElementSet>,
     /// Surfaces, in order of definition.
     pub surfaces: Vec<Surface>,
+    /// Reference nodes of rigid bodies, each with the node whose three displacements are its rotations [rad]; by reference node.
+    pub rotations: Vec<(NodeId, NodeId)>,
+    /// How many of the last nodes are not the analyst's: they only carry the rotations of reference nodes, whose numbers they have.
+    pub hidden_nodes: u32,
 }
 
 /// Face of an element; `face` is 0 for S1 (or P1).
@@ -90,6 +94,22 @@ pub struct ElementFace {
 }
 
 impl Mesh {
+    /// Number of nodes that the analyst defined; the hidden ones follow.
+    pub fn node_count(&self) -> usize {
+        self.nodes.len() - self.hidden_nodes as usize
+    }
+
+    /// Node whose displacements are the rotations of a reference node; none for nodes without rotations.
+    pub fn rotation_of(&self, reference: NodeId) -> Option<NodeId> {
+        let at = self.rotations.binary_search_by_key(&reference, |&(reference, _)| reference).ok()?;
+        Some(self.rotations[at].1)
+    }
+
+    /// Degree of freedom, as analysts number them, of a direction (0..3): 1 to 3, or 4 to 6 on hidden nodes.
+    pub fn dof_of(&self, node: NodeId, direction: u8) -> u8 {
+        direction + if node.index() < self.node_count() { 1 } else { 4 }
+    }
+
     /// Nodes of a face, outward by the right-hand rule: corners, then midside nodes.
     pub fn face_nodes(&self, face: ElementFace) -> FaceNodes {
         self.elements.face_nodes(face)

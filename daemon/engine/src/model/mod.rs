@@ -43,6 +43,8 @@ pub struct Model {
     pub pairs: Vec<ContactPair>,
     /// Linear constraints between displacements, in order of definition.
     pub equations: Vec<Equation>,
+    /// Rigid bodies, in order of definition; `equations` has what they say of their nodes.
+    pub rigid_bodies: Vec<RigidBody>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
     /// Boundary conditions of the model part (before the first step): all values are zero. Lines that name single
@@ -57,7 +59,7 @@ pub struct Model {
 pub struct Material {
     /// Name as the analyst wrote it.
     pub name: String,
-    /// Young's modulus \[pressure\], positive.
+    /// Young's modulus \[pressure\], positive; zero in the copies that solids of rigid bodies have.
     pub youngs_modulus: f64,
     /// Poisson's ratio, in (-1, 0.5).
     pub poissons_ratio: f64,
@@ -81,6 +83,37 @@ pub struct Equation {
     pub terms: Vec<(NodeId, u8, f64)>,
     /// The line, for diagnostics.
     pub place: crate::diagnostic::Place,
+}
+
+/// `*RIGID BODY`: nodes that move with a reference node, `u = u_ref + θ × (x − x_ref)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    /// Reference node.
+    pub reference: NodeId,
+    /// Node whose displacements are the rotations `θ`.
+    pub rotation: NodeId,
+    /// Nodes that move with it, ascending, without these two.
+    pub nodes: Vec<NodeId>,
+    /// The line, for diagnostics.
+    pub place: crate::diagnostic::Place,
+}
+
+impl RigidBody {
+    /// Equations of the nodes: three each.
+    pub fn equations<'a>(&'a self, mesh: &'a Mesh) -> impl Iterator<Item = Equation> + 'a {
+        self.nodes.iter().flat_map(move |&node| {
+            let [x, origin] = [node, self.reference].map(|n| mesh.nodes[n.index()]);
+            let r: [f64; 3] = std::array::from_fn(|d| x[d] - origin[d]);
+            (0..3u8).map(move |d| {
+                // (θ × r)_d = θ_a r_b − θ_b r_a.
+                let (a, b) = ((d + 1) % 3, (d + 2) % 3);
+                let mut terms = vec![(node, d, 1.0), (self.reference, d, -1.0)];
+                let turned = [(a, -r[usize::from(b)]), (b, r[usize::from(a)])];
+                terms.extend(turned.iter().filter(|(_, c)| *c != 0.0).map(|&(axis, c)| (self.rotation, axis, c)));
+                Equation { terms, place: self.place.clone() }
+            })
+        })
+    }
 }
 
 /// `*AMPLITUDE`, tabular, relative values.

@@ -30,6 +30,8 @@ impl Builder<'_> {
         for card in layout.model.iter().filter(|card| card.keyword.name == EQUATION && !card.faulty) {
             self.equation_card(card, layout);
         }
+        self.rigid_equations_from = self.model.equations.len();
+        self.write_rigid_equations();
     }
 
     /// Equations of a card, up to the first fault that leaves open where the next one begins.
@@ -82,14 +84,21 @@ impl Builder<'_> {
         let nodes = self.term_nodes(row, first, layout);
         let dof = row.whole(first + 1, "direction", None, self.report);
         let coefficient = row.real(first + 2, "coefficient", None, self.report);
-        let (nodes, dof, coefficient) = (nodes?, dof?, coefficient?);
-        if !(1..=3).contains(&dof) {
-            let message = format!("direction {dof} does not exist: nodes have displacements only");
-            self.report.error(row.at, EQUATION, message, "write 1 (x), 2 (y) or 3 (z)");
-            return None;
+        let (mut nodes, dof, coefficient) = (nodes?, dof?, coefficient?);
+        // 4 to 6 are the displacements of the node that carries the rotations.
+        let turned = || nodes.iter().map(|&node| self.model.mesh.rotation_of(node)).collect::<Option<Vec<NodeId>>>();
+        match (dof, turned()) {
+            (1..=3, _) => {}
+            (4..=6, Some(rotations)) => nodes = rotations,
+            _ => {
+                let message =
+                    format!("direction {dof} does not exist: only reference nodes of rigid bodies have rotations");
+                self.report.error(row.at, EQUATION, message, "write 1 (x), 2 (y) or 3 (z)");
+                return None;
+            }
         }
         let name = unquoted(row.text(first)).to_string();
-        Some(Term { nodes, name, direction: dof as u8 - 1, coefficient })
+        Some(Term { nodes, name, direction: ((dof - 1) % 3) as u8, coefficient })
     }
 
     /// Members of sets are paired by their numbers.
@@ -162,7 +171,7 @@ impl Builder<'_> {
                 }
             }
             let (node, direction, coefficient) = merged[0];
-            let place = format!("direction {} of node {}", direction + 1, self.model.mesh.node_labels[node.index()]);
+            let place = self.direction_name(node, direction);
             merged.retain(|term| term.2 != 0.0);
             if coefficient == 0.0 {
                 let message = format!("the coefficient of the first term, {place}, is 0");
@@ -184,6 +193,12 @@ impl Builder<'_> {
         }
     }
 
+    /// Direction of a node in words.
+    fn direction_name(&self, node: NodeId, direction: u8) -> String {
+        let mesh = &self.model.mesh;
+        format!("direction {} of node {}", mesh.dof_of(node, direction), mesh.node_labels[node.index()])
+    }
+
     /// Each direction is eliminated once, is not prescribed, and does not depend on itself.
     pub(super) fn check_equations(&mut self) {
         let boundaries = self.model.initial_boundaries.iter();
@@ -196,8 +211,21 @@ impl Builder<'_> {
         for (position, equation) in self.model.equations.iter().enumerate() {
             let (node, direction, _) = equation.terms[0];
             let at = self.equation_at[position];
-            let what = format!("direction {} of node {}", direction + 1, self.model.mesh.node_labels[node.index()]);
-            if prescribed[node.index()] >> direction & 1 == 1 {
+            let what = self.direction_name(node, direction);
+            let is_prescribed = prescribed[node.index()] >> direction & 1 == 1;
+            if position >= self.rigid_equations_from {
+                let message = match equation_of.insert((node, direction), position) {
+                    Some(_) => format!("{what} follows the rigid body, and is the first term of an *EQUATION too"),
+                    None if is_prescribed => {
+                        format!("{what} follows the rigid body, and is prescribed by *BOUNDARY too")
+                    }
+                    None => continue,
+                };
+                let remedy = "act on the reference node of the body, degrees of freedom 1 to 6, or take the node out";
+                self.report.error(at, "*RIGID BODY", message, remedy);
+                continue;
+            }
+            if is_prescribed {
                 let message = format!("{what} is the first term and is prescribed by *BOUNDARY too");
                 self.report.error(at, EQUATION, message, "put a term first that is free, or take the *BOUNDARY away");
             }
@@ -209,7 +237,7 @@ impl Builder<'_> {
         for circle in circles(&self.model.equations, &equation_of) {
             let label = |&position: &usize| {
                 let (node, direction, _) = self.model.equations[position].terms[0];
-                format!("direction {} of node {}", direction + 1, self.model.mesh.node_labels[node.index()])
+                self.direction_name(node, direction)
             };
             let shown: Vec<String> = circle.iter().take(6).map(label).collect();
             let more = if circle.len() > 6 { ", …" } else { "" };

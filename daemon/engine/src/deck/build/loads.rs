@@ -3,8 +3,8 @@
 use rustc_hash::FxHashMap;
 
 use crate::model::{
-    Connector, ElementFace, ElementId, ElementSet, Load, LoadKind, LoadsRemoved, MaterialId, Region, SetId, SurfaceId,
-    SurfaceKind,
+    Connector, ElementFace, ElementId, ElementSet, Load, LoadKind, LoadsRemoved, MaterialId, NodeId, Region, SetId,
+    SurfaceId, SurfaceKind,
 };
 
 use super::super::data::Row;
@@ -79,20 +79,23 @@ impl Builder<'_> {
         let dof = row.whole(1, "degree of freedom", None, self.report);
         let magnitude = row.real(2, "force", None, self.report);
         let (region, dof, magnitude) = (region?, dof?, magnitude?);
-        match dof {
-            1..=3 => {}
-            4..=6 => {
-                let message = format!("degree of freedom {dof} is ignored: solids have no rotations");
-                self.report.warning(row.at, CLOAD, message, "apply the moment as forces");
-                return None;
-            }
+        let nodes: Vec<NodeId> = match dof {
+            1..=3 => region.members,
+            4..=6 => region.members.iter().filter_map(|&node| self.model.mesh.rotation_of(node)).collect(),
             _ => {
-                let message = format!("degree of freedom {dof} does not exist on solids");
-                self.report.error(row.at, CLOAD, message, "write 1 (x), 2 (y) or 3 (z)");
+                let message = format!("degree of freedom {dof} does not exist");
+                let remedy = "write 1 (x), 2 (y) or 3 (z), on reference nodes of rigid bodies also 4 to 6";
+                self.report.error(row.at, CLOAD, message, remedy);
                 return None;
             }
+        };
+        if nodes.is_empty() {
+            let message =
+                format!("degree of freedom {dof} is ignored: only reference nodes of rigid bodies have rotations");
+            self.report.warning(row.at, CLOAD, message, "apply the moment as forces");
+            return None;
         }
-        let kind = LoadKind::Concentrated { nodes: region.members, direction: dof as u8 - 1 };
+        let kind = LoadKind::Concentrated { nodes, direction: ((dof - 1) % 3) as u8 };
         self.load(region.region, region.name, kind, magnitude)
     }
 

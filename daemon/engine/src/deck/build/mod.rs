@@ -22,6 +22,7 @@ mod output;
 mod pairs;
 mod prescribed;
 mod regions;
+mod rigid;
 mod sections;
 mod sets;
 mod steps;
@@ -64,6 +65,10 @@ struct Builder<'r> {
     budget: Budget,
     /// Lines of the equations.
     equation_at: Vec<At>,
+    /// Lines of the rigid bodies.
+    rigid_at: Vec<At>,
+    /// Position of the first equation of a rigid body: those of the deck stand before.
+    rigid_equations_from: usize,
     /// Names of the contact pairs.
     pairs: FxHashSet<String>,
     /// Surfaces of pairs that are wrong, about which enough has been said.
@@ -105,6 +110,8 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         element_at: parts.element_at,
         budget: Budget::of(entities),
         equation_at: Vec::new(),
+        rigid_at: Vec::new(),
+        rigid_equations_from: 0,
         pairs: FxHashSet::default(),
         faulty_pairs: FxHashSet::default(),
         finite_sliding: FxHashSet::default(),
@@ -121,6 +128,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_surfaces(&layout);
     builder.build_materials(&layout);
     builder.build_sections(&layout);
+    builder.build_rigid_bodies(&layout);
     builder.build_equations(&layout);
     builder.build_interactions(&layout);
     builder.build_pairs(&layout);
@@ -138,6 +146,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     }
     if !builder.report.has_errors() {
         builder.adjust_nodes();
+        builder.write_rigid_equations();
     }
     builder.model
 }

@@ -69,11 +69,24 @@ impl Builder<'_> {
                 );
                 continue;
             }
-            for direction in directions {
+            let nodes_along = |direction: &u8| match direction {
+                0..=2 => region.members.clone(),
+                _ => region.members.iter().filter_map(|&node| self.model.mesh.rotation_of(node)).collect(),
+            };
+            let along: Vec<_> = directions.iter().map(|d| (d % 3, nodes_along(d))).collect();
+            let ignored = directions.iter().zip(&along).filter(|(_, (_, nodes))| nodes.is_empty()).map(|(d, _)| d + 1);
+            if let (Some(first), true) = (ignored.clone().min(), looks_numeric(row.text(1).as_bytes())) {
+                let last = ignored.max().unwrap_or(first);
+                let message = format!(
+                    "degrees of freedom {first} to {last} are ignored: only reference nodes of rigid bodies have rotations"
+                );
+                self.report.warning(row.at, BOUNDARY, message, "");
+            }
+            for (direction, nodes) in along.into_iter().filter(|(_, nodes)| !nodes.is_empty()) {
                 let boundary = Boundary {
                     region: region.region.clone(),
                     region_name: region.name.clone(),
-                    nodes: region.members.clone(),
+                    nodes,
                     direction,
                     magnitude,
                     amplitude,
@@ -84,7 +97,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Directions 0..3 that a line names.
+    /// Directions that a line names: displacements 0..3, rotations 3..6.
     fn directions(&mut self, row: &Row<'_>) -> Option<Vec<u8>> {
         let first = row.text(1);
         if !first.is_empty() && !looks_numeric(first.as_bytes()) {
@@ -100,21 +113,21 @@ impl Builder<'_> {
                 );
                 return None;
             };
-            return Some(dofs.iter().filter(|&&dof| dof <= 3).map(|&dof| dof as u8 - 1).collect());
+            return Some(dofs.iter().map(|&dof| dof as u8 - 1).collect());
         }
         let first = row.whole(1, "first degree of freedom", None, self.report)?;
         let last = row.whole(2, "last degree of freedom", Some(first), self.report)?;
         if first == 0 || last < first || last > 6 {
-            let message = format!("degrees of freedom {first} to {last} do not exist on solids");
-            self.report.error(row.at, BOUNDARY, message, "write first and last of 1 (x), 2 (y), 3 (z)");
+            let message = format!("degrees of freedom {first} to {last} do not exist");
+            self.report.error(
+                row.at,
+                BOUNDARY,
+                message,
+                "write first and last of 1 (x), 2 (y), 3 (z), on reference nodes of rigid bodies also of 4 to 6",
+            );
             return None;
         }
-        if last > 3 {
-            let message =
-                format!("degrees of freedom {} to {last} are ignored: solids have no rotations", first.max(4));
-            self.report.warning(row.at, BOUNDARY, message, "");
-        }
-        Some((first..=last.min(3)).map(|dof| dof as u8 - 1).collect())
+        Some((first..=last).map(|dof| dof as u8 - 1).collect())
     }
 
     /// Checks over all steps: every step prescribes the same directions, and each by one line.
@@ -145,7 +158,7 @@ impl Builder<'_> {
             if let (Some((line, node, direction)), true) = (added, step > 0) {
                 let message = format!(
                     "degree of freedom {} of node {} is prescribed here for the first time",
-                    direction + 1,
+                    self.model.mesh.dof_of(node, direction),
                     self.label(node.index())
                 );
                 let remedy = "a step that holds further nodes is not solved: prescribe them from the first step on";
@@ -165,7 +178,7 @@ impl Builder<'_> {
         }
         let freed = prescribed.iter().zip(&here).map(|(before, now)| before & !now);
         if let Some((node, bits)) = freed.enumerate().find(|&(_, bits)| bits != 0) {
-            let direction = bits.trailing_zeros() + 1;
+            let direction = self.model.mesh.dof_of(NodeId(node as u32), bits.trailing_zeros() as u8);
             let message = format!("OP=NEW would free degree of freedom {direction} of node {}", self.label(node));
             let remedy = "a step that frees nodes is not solved: use OP=MOD, or prescribe them again";
             self.report.error(at, BOUNDARY, message, remedy);
@@ -195,7 +208,7 @@ impl Builder<'_> {
         for ((earlier, later), (count, node)) in overridden {
             let (before, now) = (&boundaries[earlier], &boundaries[later]);
             let at = self.step_lines[step][later];
-            let direction = now.direction + 1;
+            let direction = mesh.dof_of(node, now.direction);
             let label = mesh.node_labels[node.index()];
             let same = before.magnitude == now.magnitude && before.amplitude == now.amplitude;
             if !same && before.magnitude != 0.0 && now.magnitude != 0.0 {

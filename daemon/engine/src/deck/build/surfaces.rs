@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::model::{ElementFace, ElementId, Mesh, NodeId, Surface, SurfaceKind};
 
 use super::super::card::{Body, Card, Faces, Members};
-use super::super::members::FACE_REMEDY;
+use super::super::members::{FACE_REMEDY, SNEG, SPOS};
 use super::super::report::At;
 use super::Builder;
 use super::layout::Layout;
@@ -80,7 +80,7 @@ impl Builder<'_> {
             match self.element(label, at, SURFACE) {
                 Some(element) => match self.without_face(&[element], face) {
                     None if face == 0 => exposed.push(element),
-                    None => faces.push(ElementFace { element, face: face - 1 }),
+                    None => faces.push(ElementFace { element, face: position(face) }),
                     Some(message) => {
                         self.report.error(at, SURFACE, message, FACE_REMEDY);
                         *sound = false;
@@ -101,7 +101,7 @@ impl Builder<'_> {
             match (self.without_face(elements, *face), *face) {
                 (None, 0) => exposed.extend(elements),
                 (None, face) => {
-                    faces.extend(elements.iter().map(|&element| ElementFace { element, face: face - 1 }));
+                    faces.extend(elements.iter().map(|&element| ElementFace { element, face: position(face) }));
                 }
                 (Some(message), _) => {
                     self.report.error(*at, SURFACE, message, FACE_REMEDY);
@@ -121,16 +121,34 @@ impl Builder<'_> {
 }
 
 impl Builder<'_> {
-    /// Says which of the elements has no such face, numbered from 1; 0 is any face.
+    /// Says which of the elements has no such face, numbered from 1; 0 is any face, SPOS and SNEG are those of facets.
     pub(super) fn without_face(&self, elements: &[ElementId], face: u8) -> Option<String> {
         let mesh = &self.model.mesh;
         let faces = |element: ElementId| mesh.elements.kind(element.index()).shape().faces().len();
+        if let Some(facet) = elements.iter().find(|e| face == 0 && mesh.elements.kind(e.index()).is_facet()) {
+            let (label, kind) = (mesh.element_labels[facet.index()], mesh.elements.kind(facet.index()).name());
+            return Some(format!("element {label} of type {kind} has two sides: write SPOS or SNEG behind it"));
+        }
+        if let SPOS | SNEG = face {
+            let solid = elements.iter().find(|e| !mesh.elements.kind(e.index()).is_facet())?;
+            let (label, kind) = (mesh.element_labels[solid.index()], mesh.elements.kind(solid.index()).name());
+            return Some(format!("element {label} of type {kind} has no sides SPOS and SNEG: it is no facet"));
+        }
         let element = *elements.iter().find(|&&element| usize::from(face.max(1)) > faces(element))?;
         let (label, kind) = (mesh.element_labels[element.index()], mesh.elements.kind(element.index()).name());
         Some(match faces(element) {
             0 => format!("element {label} of type {kind} has no faces"),
             count => format!("element {label} of type {kind} has {count} faces and no face {face}"),
         })
+    }
+}
+
+/// Position of a face in its element.
+fn position(face: u8) -> u8 {
+    match face {
+        SPOS => 0,
+        SNEG => 1,
+        face => face - 1,
     }
 }
 
@@ -145,12 +163,14 @@ fn free_faces(mesh: &Mesh, elements: &[ElementId]) -> Vec<ElementFace> {
         corners.sort_unstable();
         corners
     };
+    // A facet that covers a solid does not take its face away.
+    let is_solid = |element: &ElementId| mesh.elements.kind(element.index()).is_solid();
     let faces_of = |element: ElementId| mesh.elements.faces_of(element);
     let mut wanted: FxHashMap<[NodeId; 4], u32> = FxHashMap::default();
     for &element in elements {
         wanted.extend(faces_of(element).map(|face| (corners(face), 0)));
     }
-    for element in (0..mesh.elements.len() as u32).map(ElementId) {
+    for element in (0..mesh.elements.len() as u32).map(ElementId).filter(is_solid) {
         for face in faces_of(element) {
             if let Some(count) = wanted.get_mut(&corners(face)) {
                 *count += 1;
