@@ -156,6 +156,24 @@ CASES = [
         "1e-9",
     ),
     Case(
+        "B06",
+        "The solver shall close GAPUNI, GAPCYL and GAPSPHER elements at their distances, hard.",
+        "closed form",
+        "1e-12",
+    ),
+    Case(
+        "B07",
+        "The solver shall follow force laws in GAP elements without an area, pressure laws with one.",
+        "bisection",
+        "1e-10",
+    ),
+    Case(
+        "B08",
+        "The solver shall read a law as pressure, force or force per length by the kind of secondary surface.",
+        "closed form: bricks, nodes with and without an area, gaps, trusses",
+        "1e-12",
+    ),
+    Case(
         "B09",
         "The solver shall augment with the penetrations and pressures of augmented Lagrange, solve by solve.",
         "geometric sequence of three springs",
@@ -221,6 +239,24 @@ CASES = [
         "The solver shall augment where a penetration exceeds its tolerance, absolute or relative to the faces, step by step.",
         "closed form",
         "exact",
+    ),
+    Case(
+        "B28",
+        "The solver shall take clearances that override the geometry: uniform, by node, by set, negative ones.",
+        "closed form",
+        "1e-11",
+    ),
+    Case(
+        "friction-steps",
+        "The solver shall let rough friction begin with or after closing, begin and end with steps, and let removed pairs go over a step.",
+        "closed form",
+        "1e-11",
+    ),
+    Case(
+        "V01-V20",
+        "The solver shall refuse what the manual forbids with line, keyword and reason, all at once, and warn where it warns.",
+        "the manual's rules",
+        "exit code 2, words and line numbers",
     ),
     Case(
         "oracle-steps",

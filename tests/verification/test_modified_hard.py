@@ -258,6 +258,37 @@ def test_b20_overclosures_and_tensions_count_together(write_deck, tmp_path):
             check(found[1], [("OP", 0.0, -0.01), ("OP", 0.0, -0.02), ("CL", 1.5, 0.0)])
 
 
+def two_pairs(cards):
+    """Three points that overlap by less than UERRMX: two of one pair, one of another."""
+    points = [Point(driver=100.0) for _ in VIOLATIONS]
+    moves = [f"{driver(i)}, 3, 3, {-v!r}" for i, v in enumerate(VIOLATIONS)]
+    model = ["*CONTACT PAIR, INTERACTION=SI, TYPE=NODE TO SURFACE, SMALL SLIDING", "OTHERS, WALL"]
+    text = deck(points, HARD, step(*cards, "*BOUNDARY", *moves), model=model)
+    both = f"*SURFACE, NAME=POINTS, TYPE=NODE\n{node(0)},\n{node(1)},\n"
+    assert f"{both}{node(2)},\n" in text
+    return text.replace(f"{both}{node(2)},\n", f"{both}*SURFACE, NAME=OTHERS, TYPE=NODE\n{node(2)},\n")
+
+
+@pytest.mark.parametrize(
+    ("cards", "tolerated"),
+    [
+        (["*CONTACT CONTROLS, MAXCHP=3, UERRMX=0.02"], (True, True)),
+        (["*CONTACT CONTROLS, MAXCHP=2, UERRMX=0.02"], (False, False)),
+        (["{POINTS}, MAXCHP=2, UERRMX=0.02", "{OTHERS}, MAXCHP=1, UERRMX=0.02"], (True, True)),
+        (["{POINTS}, MAXCHP=1, UERRMX=0.02", "{OTHERS}, MAXCHP=2, UERRMX=0.02"], (False, True)),
+        (["{POINTS}, MAXCHP=2, UERRMX=0.02"], (True, False)),
+    ],
+    ids=["all of the model", "too many in the model", "of each pair", "too many in one", "one pair alone"],
+)
+def test_b20_violations_count_over_the_pair_or_with_global_controls_over_the_model(
+    write_deck, tmp_path, cards, tolerated
+):
+    names = {name: f"*CONTACT CONTROLS, MASTER=WALL, SLAVE={name}" for name in ("POINTS", "OTHERS")}
+    (found,) = solve(write_deck, tmp_path, two_pairs([card.format(**names) for card in cards]))
+    granted = [tolerated[0], tolerated[0], tolerated[1]]
+    check(found, [("OP", 0.0, v) if g else ("CL", 100.0 * v, 0.0) for v, g in zip(VIOLATIONS, granted, strict=True)])
+
+
 def test_controls_belong_to_the_step_and_are_reset(write_deck, tmp_path):
     """Tolerated in step 1, still in step 2 (controls stay), not after RESET."""
     lines = step(modified(1, 0.02, 3.0), "*BOUNDARY", f"{driver()}, 3, 3, -0.01")

@@ -191,3 +191,48 @@ def test_rough_friction_alone_holds_while_closed_and_lets_go(write_deck, tmp_pat
     assert found[2][0].shear == (0.0, 0.0)
     sideways = [place[0] for place in moved(result)]
     assert sideways == pytest.approx([0.0, 0.0, 6.0 / lateral], abs=1e-13)
+
+
+def test_friction_may_begin_with_the_increment_after_closing(write_deck, tmp_path):
+    """FRICTION ONSET=DELAYED: free sideways in the increment of closing, stuck from the place at its end."""
+    gap, stiffness, lateral = 0.01, 400.0, 100.0
+    point = Point(gap, driver=stiffness, lateral=lateral)
+    card = "*CONTACT CONTROLS, MASTER=WALL, SLAVE=POINTS, FRICTION ONSET=DELAYED"
+    lines = step(card, *forces((1, 6.0)), "*BOUNDARY", f"{driver()}, 3, 3, {-2.0 * gap!r}")
+    lines += step(*forces((1, -2.0)))
+    behavior = ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD", "*FRICTION, ROUGH"]
+    found, result = solve(write_deck, tmp_path, deck([point], behavior, lines))
+    [first], [second] = found
+    assert first.shear == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert first.pressure == pytest.approx(stiffness * gap, rel=1e-12)
+    assert second.status == "ST"
+    assert second.shear == pytest.approx((-8.0, 0.0), rel=1e-12, abs=1e-12)
+    assert [place[0] for place in moved(result)] == pytest.approx([6.0 / lateral] * 2, rel=1e-12)
+
+
+def test_friction_may_change_from_step_to_step(write_deck, tmp_path):
+    """Frictionless, then rough by *CHANGE FRICTION: sticks from the place at the start of that step; then frictionless again."""
+    gap, stiffness, lateral = 0.01, 400.0, 100.0
+    point = Point(gap, driver=stiffness, lateral=lateral)
+    lines = step(*forces((1, 6.0)), "*BOUNDARY", f"{driver()}, 3, 3, {-2.0 * gap!r}")
+    lines += step("*CHANGE FRICTION, INTERACTION=SI", "*FRICTION, ROUGH", *forces((1, 10.0)))
+    lines += step("*CHANGE FRICTION, INTERACTION=SI, RESET", *forces((1, -5.0)))
+    behavior = ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"]
+    found, result = solve(write_deck, tmp_path, deck([point], behavior, lines))
+    assert [p.status for (p,) in found] == ["CL", "ST", "CL"]
+    assert [p.shear[0] for (p,) in found] == pytest.approx([0.0, 4.0, 0.0], abs=1e-11)
+    sideways = [place[0] for place in moved(result)]
+    assert sideways == pytest.approx([6.0 / lateral, 6.0 / lateral, -5.0 / lateral], rel=1e-12)
+
+
+def test_a_pair_that_is_removed_lets_go_over_the_step(write_deck, tmp_path):
+    """What it carries falls linearly to zero, so that the driven point approaches the place of its driver evenly."""
+    gap, stiffness, increments = 0.01, 400.0, 4
+    lines = step("*BOUNDARY", f"{driver()}, 3, 3, {-3.0 * gap!r}")
+    change = "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nPOINTS, WALL"
+    lines += step(change, increments=increments)
+    behavior = ["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"]
+    result = support.run(write_deck(deck([Point(gap, driver=stiffness)], behavior, lines)), tmp_path)
+    places = [place[2] for place in moved(result)]
+    expected = [-gap - 2.0 * gap * i / increments for i in range(increments + 1)]
+    assert places == pytest.approx(expected, rel=1e-12)
