@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod command_line;
+mod contact;
 mod faults;
 mod lifecycle;
 mod load;
