@@ -9,11 +9,13 @@ import support
 
 TOLERANCE = 1e-10
 # What is small against what: columns that share a scale, because some of them are rounding alone.
-LENGTHS, FORCES, PRESSURES = (
-    ("U", "COPEN", "CSLIP"),
-    ("RF", "CFN", "CFS", "CFT"),
-    ("CPRESS", "CSHEAR", "CDPRESS", "CDSHEAR"),
-)
+FAMILIES = {
+    "length": ("U", "COPEN", "CSLIP"),
+    "force": ("RF", "CFN", "CFS", "CFT"),
+    "pressure": ("CPRESS", "CSHEAR", "CDPRESS", "CDSHEAR"),
+    "moment": ("CMN", "CMS", "CMT", "CTRQ"),
+    "place": ("XN", "XS", "XT"),
+}
 # Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits.
 RESOLVED = 1e-6
 
@@ -36,7 +38,7 @@ def tables(folder, deck, path):
 def family(column):
     """Columns with one scale: displacements with clearances, forces, pressures with shear, energies; every other column by itself."""
     name = column.partition("[")[0].rstrip("123M")
-    for kind, names in (("length", LENGTHS), ("force", FORCES), ("pressure", PRESSURES)):
+    for kind, names in FAMILIES.items():
         if name in names:
             return kind
     return "energy" if column.startswith(("ALL", "ETOTAL", "IMPACT")) else column
@@ -70,6 +72,8 @@ def differing(dense, sparse, extent=0.0):
             numbers[name, column] = pair
             scales[family(column)] = max(scales.get(family(column), 0.0), np.abs(pair[0]).max(initial=0.0))
     scales["energy"] = max(scales["energy"], scales["force"] * scales["length"])
+    scales["moment"] = max(scales.get("moment", 0.0), scales["force"] * extent)
+    scales["place"] = max(scales.get("place", 0.0), extent)
     for (name, column), (ours, yours) in numbers.items():
         difference = np.abs(ours - yours).max(initial=0.0)
         if not difference <= TOLERANCE * scales[family(column)]:

@@ -13,7 +13,7 @@ use crate::solve::reactions;
 pub type ElementStress = Vec<[f64; 6]>;
 
 /// Fields that [`Simulation::field`] knows.
-const FIELDS: &str = "U, RF, S, CPRESS, COPEN, CSTATUS, CSLIP";
+const FIELDS: &str = "U, RF, S, CPRESS, CSHEAR, CDPRESS, CDSHEAR, COPEN, CSLIP, CSTATUS";
 
 impl Simulation {
     /// Displacements and reactions of all nodes: one backward solve per body.
@@ -182,6 +182,9 @@ impl Simulation {
             "CPRESS" => Ok(contact(1, points.iter().map(|p| p.pressure).collect())),
             "COPEN" => Ok(contact(1, points.iter().map(|p| p.clearance).collect())),
             "CSTATUS" => Ok(contact(1, points.iter().map(|p| f64::from(p.status.number())).collect())),
+            "CSHEAR" => Ok(contact(2, points.iter().flat_map(|p| p.shear).collect())),
+            "CDPRESS" => Ok(contact(1, points.iter().map(|p| p.viscous).collect())),
+            "CDSHEAR" => Ok(contact(2, points.iter().flat_map(|p| p.viscous_shear).collect())),
             "CSLIP" => Ok(contact(2, points.iter().flat_map(|p| p.slip).collect())),
             _ => Err(FieldError { name: name.into(), available: FIELDS.into() }),
         }

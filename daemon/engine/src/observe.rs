@@ -131,6 +131,8 @@ impl Simulation {
             Source::PairClearanceMin(pair) => points(pair).map(|p| p.clearance).fold(f64::MAX, f64::min),
             Source::PairClosed(pair) => closed(pair) as f64,
             Source::PairOpen(pair) => (points(pair).count() - closed(pair)) as f64,
+            Source::PairShear(pair, d) => pairs[pair].shear_force[d],
+            Source::PairStatus(pair, status) => points(pair).filter(|p| p.status == status).count() as f64,
             Source::Generalised(column) => self.generalised(column),
             Source::Energy(index) => {
                 let e = &self.derived.energies;
@@ -140,6 +142,7 @@ impl Simulation {
             Source::EquilibriumIterations => count(|c| c.equilibrium_iterations),
             Source::SevereDiscontinuityIterations => count(|c| c.severe_discontinuity_iterations),
             Source::Cutbacks => count(|c| c.cutbacks),
+            Source::Augmentations => count(|c| c.augmentations),
             Source::LastStatusChange => self.state.last_change,
         }
     }

@@ -1,9 +1,10 @@
 //! Output ports: which condensed results a deck offers, and where each comes from.
 
 use crate::diagnostic::{Diagnostic, Place};
-use crate::model::{Model, NodeId, SetId};
+use crate::model::{Friction, Model, NodeId, SetId};
 use crate::port::{Port, PortList, Quantity, inputs_of};
 use crate::port_config::PortConfig;
+use crate::simulation::ContactStatus;
 use crate::solve::columns::{Column, merge};
 use crate::solve::constraints::Constraints;
 
@@ -24,6 +25,10 @@ pub enum Source {
     PairClosed(usize),
     /// Open points of a pair.
     PairOpen(usize),
+    /// Component of the friction force of a pair.
+    PairShear(usize, usize),
+    /// Points of a pair with a status.
+    PairStatus(usize, ContactStatus),
     /// Generalised value of a column; none where no direction of the set takes part.
     Generalised(Option<usize>),
     /// One of the energies, in the order of [`ENERGIES`].
@@ -36,6 +41,8 @@ pub enum Source {
     SevereDiscontinuityIterations,
     /// Cutbacks so far, all steps.
     Cutbacks,
+    /// Augmentations so far, all steps.
+    Augmentations,
     /// Total time of the last status change.
     LastStatusChange,
 }
@@ -95,6 +102,20 @@ fn requested_sets(model: &Model) -> Vec<SetId> {
     sets
 }
 
+/// Whether a pair has friction in any step.
+fn has_friction(model: &Model, pair: usize) -> bool {
+    let own = model.interactions.get(model.pairs[pair].interaction.index()).map(|interaction| interaction.friction);
+    let steps = model.steps.iter().filter_map(|step| step.contact.frictions.get(pair).copied());
+    own.into_iter().chain(steps).any(|friction| friction != Friction::None)
+}
+
+/// Whether open points of a pair may be damped in any step.
+fn is_damped(model: &Model, pair: usize) -> bool {
+    let interaction = model.interactions.get(model.pairs[pair].interaction.index());
+    interaction.is_some_and(|interaction| interaction.damping.is_some())
+        || model.steps.iter().any(|step| step.contact.controls_of(pair).stabilization.is_some())
+}
+
 impl Outputs {
     /// Lists the outputs of a model and appends the columns that they need.
     pub fn new(model: &Model, constraints: &Constraints, columns: &mut Vec<Column>) -> Self {
@@ -107,6 +128,14 @@ impl Outputs {
         };
         for (index, pair) in model.pairs.iter().enumerate() {
             out.pair(index, &pair.name);
+            if has_friction(model, index) {
+                out.friction(index, &pair.name);
+            }
+            if is_damped(model, index) {
+                let what = "Open contact points with viscous damping only".into();
+                let source = Source::PairStatus(index, ContactStatus::Viscous);
+                out.add(format!("contact.{}.viscous", pair.name), Quantity::Count, what, source);
+            }
         }
         let reaction = |nodes: &[NodeId], d: usize, columns: &mut Vec<Column>| {
             let entries: Vec<_> =
@@ -160,7 +189,27 @@ impl Outputs {
             "Total time of the last status change".into(),
             Source::LastStatusChange,
         );
+        out.add(
+            "work.augmentations".into(),
+            Quantity::Count,
+            "Updates of the multipliers of augmented Lagrange".into(),
+            Source::Augmentations,
+        );
         out
+    }
+
+    fn friction(&mut self, index: usize, name: &str) {
+        for d in 0..3 {
+            let what = format!("Friction force {} on the secondary surface", d + 1);
+            self.add(format!("contact.{name}.CFS{}", d + 1), Quantity::Force, what, Source::PairShear(index, d));
+        }
+        for (suffix, what, status) in [
+            ("sticking", "Closed contact points that stick", ContactStatus::Sticking),
+            ("slipping", "Closed contact points that slip", ContactStatus::Slipping),
+        ] {
+            let source = Source::PairStatus(index, status);
+            self.add(format!("contact.{name}.{suffix}"), Quantity::Count, what.into(), source);
+        }
     }
 
     fn pair(&mut self, index: usize, name: &str) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use overclosure::output::{CutbackSummary, ResultWriter, StepSummary};
+use overclosure::output::{CutbackSummary, ResultWriter, StatusChangeSummary, StepSummary, status_changes};
 use overclosure::simulation::{CutbackReport, IncrementReport, Simulation, Watch};
 
 use super::clock::{Clock, Stage};
@@ -19,6 +19,7 @@ pub struct Monitor<'a> {
     audit: Audit,
     sizes: Sizes,
     cutbacks: Vec<CutbackSummary>,
+    status_changes: Vec<StatusChangeSummary>,
 }
 
 /// What a run has shown when it is over.
@@ -29,6 +30,8 @@ pub struct Followed {
     pub sizes: Sizes,
     /// Increments tried in vain.
     pub cutbacks: Vec<CutbackSummary>,
+    /// The contact log.
+    pub status_changes: Vec<StatusChangeSummary>,
 }
 
 impl<'a> Monitor<'a> {
@@ -50,19 +53,21 @@ impl<'a> Monitor<'a> {
             audit: Audit::default(),
             sizes: Sizes::default(),
             cutbacks: Vec::new(),
+            status_changes: Vec::new(),
         }
     }
 
     /// The writer, to be finished, and what was seen.
     pub fn finish(self) -> (ResultWriter, Followed) {
-        let Self { writer, audit, sizes, cutbacks, .. } = self;
-        (writer, Followed { audit: audit.findings(), sizes, cutbacks })
+        let Self { writer, audit, sizes, cutbacks, status_changes, .. } = self;
+        (writer, Followed { audit: audit.findings(), sizes, cutbacks, status_changes })
     }
 }
 
 impl Watch for Monitor<'_> {
     fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
         self.sizes.take(report);
+        self.status_changes.extend(status_changes(simulation.prepared(), report));
         self.audit.take(simulation.audit(), &format!("step {}, increment {}", report.step, report.increment));
         let solving = self.clock.enter(Stage::WRITE);
         self.writer.increment(simulation, report);

@@ -187,7 +187,7 @@ impl Job {
     }
 
     fn report(&self, ended: &Ended, followed: Followed, snapshots: Vec<SnapshotSummary>) -> RunReport {
-        let Followed { audit, sizes, cutbacks } = followed;
+        let Followed { audit, sizes, cutbacks, status_changes } = followed;
         let simulation = &self.simulation;
         let mesh = &self.prepared.model().mesh;
         RunReport {
@@ -207,6 +207,7 @@ impl Job {
             inputs_set: self.inputs_set(),
             steps: sizes.enter(simulation.step_reports().into_iter().map(Into::into).collect()),
             cutbacks,
+            status_changes,
             snapshots,
             diagnostics: self.diagnostics.iter().map(Finding::from).collect(),
             audit,

@@ -111,6 +111,9 @@ impl Frames {
             Array::real("S_MISES", &[], fields.stress.iter().map(mises)),
             Array::real("CPRESS", &[], surface.pressure.into_iter()),
             Array::real("COPEN", &[], surface.clearance.into_iter()),
+            Array::real("CDPRESS", &[], surface.viscous.into_iter()),
+            Array::real("CSHEAR", &["CSHEAR1", "CSHEAR2"], surface.shear.into_iter().flatten()),
+            Array::real("CSLIP", &["CSLIP1", "CSLIP2"], surface.slip.into_iter().flatten()),
             Array::small("CSTATUS", surface.status.into_iter()),
         ];
         let mut point_data: Vec<&Array> = arrays.iter().collect();
@@ -186,6 +189,9 @@ fn types(mesh: &Mesh) -> Vec<u8> {
 struct SurfaceFields {
     pressure: Vec<f64>,
     clearance: Vec<f64>,
+    viscous: Vec<f64>,
+    shear: Vec<[f64; 2]>,
+    slip: Vec<[f64; 2]>,
     status: Vec<i8>,
 }
 
@@ -195,6 +201,9 @@ impl SurfaceFields {
         let mut fields = Self {
             pressure: vec![0.0; nodes],
             clearance: vec![f64::NAN; nodes],
+            viscous: vec![0.0; nodes],
+            shear: vec![[0.0; 2]; nodes],
+            slip: vec![[0.0; 2]; nodes],
             status: vec![NO_CONTACT_POINT; nodes],
         };
         for (point, result) in prepared.contact_points().iter().zip(contact) {
@@ -202,6 +211,9 @@ impl SurfaceFields {
             if fields.status[i] == NO_CONTACT_POINT || result.clearance < fields.clearance[i] {
                 fields.pressure[i] = result.pressure;
                 fields.clearance[i] = result.clearance;
+                fields.viscous[i] = result.viscous;
+                fields.shear[i] = result.shear;
+                fields.slip[i] = result.slip;
                 fields.status[i] = result.status.number();
             }
         }

@@ -21,6 +21,7 @@ mod report;
 mod results_file;
 mod results_header;
 mod snapshots;
+mod status_log;
 mod totals;
 mod vtu;
 
@@ -30,6 +31,7 @@ mod tests;
 pub use file::OutputError;
 pub use report::{CutbackSummary, Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StepSummary, write_report};
 pub use snapshots::SnapshotSummary;
+pub use status_log::{StatusChangeSummary, status_changes};
 
 pub use crate::restart::Standing;
 
@@ -37,7 +39,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::model::{ElementId, Model, Procedure, RestartRequest, Step};
-use crate::simulation::{IncrementReport, NodalSolution, PreparedModel, Simulation, Watch};
+use crate::simulation::{
+    ContactPointResult, HistoryRow, IncrementReport, NodalSolution, PreparedModel, Simulation, Watch,
+};
 
 use contact_table::ContactTable;
 use frames::Frames;
@@ -46,8 +50,9 @@ use node_table::NodeTable;
 use plan::{Moment, Plan};
 use port_table::PortTable;
 use printed::Printed;
-use results_file::{Increment, ResultsFile};
+use results_file::ResultsFile;
 use snapshots::Snapshots;
+use totals::Resultants;
 
 /// Writes the results of a job into a directory, increment by increment.
 ///
@@ -138,8 +143,9 @@ impl ResultWriter {
         let plan = Plan::new(step, increment.increment, moment);
         let history = simulation.history();
         let contact = simulation.contact_results();
+        let resultants = Resultants::of_pairs(&prepared, &history.pairs, contact);
         if moment != Moment::Stopped {
-            self.history.row(increment, &history)?;
+            self.history.row(increment, &history, &resultants)?;
             self.ports.row(increment, simulation)?;
         }
         if plan.contact_rows {
@@ -157,9 +163,15 @@ impl ResultWriter {
                 self.frames.write(&prepared, increment.time, fields, contact)?;
             }
         }
-        self.printed.write(&prepared, increment, &plan, &history, contact, fields.as_ref())?;
-        let said =
-            Increment { prepared: &prepared, report: increment, history: &history, contact, fields: fields.as_ref() };
+        let said = Increment {
+            prepared: &prepared,
+            report: increment,
+            history: &history,
+            resultants: &resultants,
+            contact,
+            fields: fields.as_ref(),
+        };
+        self.printed.write(&said, &plan)?;
         self.results.write(&said, &plan)?;
         self.snapshots.write(step, increment, moment, simulation)
     }
@@ -197,6 +209,17 @@ fn period(procedure: &Procedure) -> f64 {
     match procedure {
         Procedure::Static(control) => control.period,
     }
+}
+
+/// What an increment has to say to the files with tables and records.
+struct Increment<'a> {
+    prepared: &'a PreparedModel,
+    report: &'a IncrementReport,
+    history: &'a HistoryRow,
+    resultants: &'a [Resultants],
+    contact: &'a [ContactPointResult],
+    /// Values that one recovery gives, where something needs them.
+    fields: Option<&'a NodalFields>,
 }
 
 /// What one recovery gives; stress and axial values are empty when nothing needs them.

@@ -9,10 +9,10 @@ use super::plan::Plan;
 use super::printed_contact::contact_tables;
 use super::printed_elements::element_tables;
 use super::printed_table::{Entity, Table};
-use super::totals::Resultants;
-use super::{NodalFields, period, step_of};
+use super::status_log::status_changes;
+use super::{Increment, NodalFields, period, step_of};
 use crate::model::{Model, NodeId, NodeRequest, Procedure, Step, Totals};
-use crate::simulation::{ContactPointResult, HistoryRow, IncrementReport, PreparedModel};
+use crate::simulation::{HistoryRow, IncrementReport, PreparedModel};
 
 /// Writes the summary of an increment and the tables that are due.
 pub(super) struct Printed {
@@ -33,34 +33,29 @@ impl Printed {
         Ok(Self { file, step: 0, increment: 0, total_sets })
     }
 
-    pub(super) fn write(
-        &mut self,
-        prepared: &PreparedModel,
-        increment: &IncrementReport,
-        plan: &Plan,
-        history: &HistoryRow,
-        contact: &[ContactPointResult],
-        fields: Option<&NodalFields>,
-    ) -> Result<(), OutputError> {
+    /// Writes the summary of an increment with its contact log, if a status changed or a table is due, and the tables.
+    pub(super) fn write(&mut self, said: &Increment<'_>, plan: &Plan) -> Result<(), OutputError> {
+        let Increment { prepared, report, history, resultants, contact, fields } = *said;
         let tables = !(plan.node_prints.is_empty() && plan.element_prints.is_empty() && plan.contact_prints.is_empty());
         let model = prepared.model();
-        let Some(step) = step_of(model, increment).filter(|_| tables || plan.end) else {
+        let wanted = tables || plan.end || !report.status_changes.is_empty();
+        let Some(step) = step_of(model, report).filter(|_| wanted) else {
             return Ok(());
         };
         let mut text = String::new();
-        if increment.step != self.step {
-            (self.step, self.increment) = (increment.step, 0);
-            step_heading(&mut text, step, increment);
+        if report.step != self.step {
+            (self.step, self.increment) = (report.step, 0);
+            step_heading(&mut text, step, report);
         }
-        if increment.increment != self.increment {
-            self.increment = increment.increment;
-            summary(&mut text, step, increment);
+        if report.increment != self.increment {
+            self.increment = report.increment;
+            summary(&mut text, step, report);
+            contact_log(&mut text, prepared, report);
         }
         if !plan.contact_prints.is_empty() {
             text.push_str("\n\n                              C O N T A C T   O U T P U T\n");
-            let resultants = Resultants::of_pairs(prepared, &history.pairs, contact);
             for request in &plan.contact_prints {
-                contact_tables(&mut text, prepared, request, &resultants, contact);
+                contact_tables(&mut text, prepared, request, resultants, contact);
             }
         }
         if let Some(fields) = fields.filter(|_| !plan.element_prints.is_empty()) {
@@ -167,4 +162,18 @@ fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
     let fraction = increment.step_time / period(&step.procedure);
     pair(text, "TIME INCREMENT COMPLETED", increment.increment_size, "FRACTION OF STEP COMPLETED", fraction);
     pair(text, "STEP TIME COMPLETED", increment.step_time, "TOTAL TIME COMPLETED", increment.time);
+}
+
+/// Points whose status changed in the increment.
+fn contact_log(text: &mut String, prepared: &PreparedModel, report: &IncrementReport) {
+    if report.status_changes.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n   CONTACT POINTS THAT CHANGED STATUS IN THIS INCREMENT\n\n         NODE   FROM     TO   CONTACT PAIR\n\n",
+    );
+    for change in status_changes(prepared, report) {
+        let (from, to) = (change.from.code(), change.to.code());
+        let _ = writeln!(text, "  {:>11} {from:>6} {to:>6}   {}", change.node, change.pair);
+    }
 }

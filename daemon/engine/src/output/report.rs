@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::file::OutputError;
 use super::snapshots::SnapshotSummary;
+use super::status_log::StatusChangeSummary;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::model::Dialect;
 use crate::restart::Standing;
@@ -51,6 +52,8 @@ pub struct RunReport {
     pub steps: Vec<StepSummary>,
     /// Increments of this run that were tried in vain, in order.
     pub cutbacks: Vec<CutbackSummary>,
+    /// The contact log: points that changed status in this run, in order.
+    pub status_changes: Vec<StatusChangeSummary>,
     /// Snapshots from which a run can go on.
     pub snapshots: Vec<SnapshotSummary>,
     /// Findings about the deck.

@@ -10,13 +10,13 @@ use super::file::{OutputError, TextFile};
 use super::plan::Plan;
 use super::printed_contact::{gap_values, points_of};
 use super::results_header::{Labels, header};
-use super::totals::{Resultants, magnitude};
-use super::{NodalFields, step_of};
+use super::totals::magnitude;
+use super::{Increment, NodalFields, step_of};
 use crate::model::{
     ContactRequest, ElementId, ElementKind, ElementRequest, Mesh, Model, NodeId, NodeRequest, OutputTarget,
     PairMembers, Procedure, SurfaceId,
 };
-use crate::simulation::{ContactPointResult, HistoryRow, IncrementReport, PreparedModel};
+use crate::simulation::IncrementReport;
 
 /// Records of the totals of a pair.
 const TOTALS: [(&str, u32); 9] = [
@@ -48,15 +48,6 @@ struct Open {
     file: TextFile,
     labels: Labels,
     stream: Stream,
-}
-
-/// What one increment has to say.
-pub(super) struct Increment<'a> {
-    pub prepared: &'a PreparedModel,
-    pub report: &'a IncrementReport,
-    pub history: &'a HistoryRow,
-    pub contact: &'a [ContactPointResult],
-    pub fields: Option<&'a NodalFields>,
 }
 
 impl ResultsFile {
@@ -98,9 +89,8 @@ impl ResultsFile {
                 open.nodes(model, request, fields);
             }
         }
-        let resultants = Resultants::of_pairs(increment.prepared, &increment.history.pairs, increment.contact);
         for request in &plan.contact_files {
-            open.contact(increment, request, &resultants);
+            open.contact(increment, request);
         }
         open.stream.end_increment();
         open.file.append(&open.stream.take())
@@ -243,7 +233,7 @@ impl Open {
         }
     }
 
-    fn contact(&mut self, increment: &Increment<'_>, request: &ContactRequest, resultants: &[Resultants]) {
+    fn contact(&mut self, increment: &Increment<'_>, request: &ContactRequest) {
         let (prepared, mesh) = (increment.prepared, &increment.prepared.model().mesh);
         let records = [(1511, &COMPONENTS[..3]), (1512, &COMPONENTS[3..6]), (1521, &COMPONENTS[6..])];
         for (i, pair) in prepared.model().pairs.iter().enumerate().filter(|(_, pair)| request.selects(pair)) {
@@ -264,7 +254,7 @@ impl Open {
                     }
                 }
             }
-            let Some(resultants) = resultants.get(i) else { continue };
+            let Some(resultants) = increment.resultants.get(i) else { continue };
             for (family, key) in TOTALS.into_iter().filter(|(family, _)| request.asks_for(&[family])) {
                 let Some(vector) = resultants.family(family) else { continue };
                 let size = family.starts_with('C').then(|| magnitude(vector));

@@ -133,7 +133,113 @@ fn requests_decide_what_is_written() {
     for part in ["two cubes", "NODES OF NODE SET TOP", "CONTACT PAIR (SEC,PRI)", "1.000000E+01", "TOTAL FORCE"] {
         assert!(printed.contains(part), "{part} is missing in\n{printed}");
     }
-    assert_eq!(printed.matches("SUMMARY").count(), 3, "increments 2, 3 and 4");
+    assert_eq!(printed.matches("SUMMARY").count(), 4, "increments 2, 3 and 4, and 1 for its contact log");
+    let log: Vec<&str> = printed.lines().filter(|line| line.ends_with("OP     CL   SEC_PRI")).collect();
+    assert_eq!(log.len(), 4, "{printed}");
+    assert!(printed.find(log[3]) < printed.find("INCREMENT     2"), "{printed}");
+}
+
+/// Tables of the last increment, by the words behind `PRINTED FOR`.
+fn tables(directory: &tempfile::TempDir) -> Vec<String> {
+    let printed = fs::read_to_string(directory.path().join("job.dat")).unwrap();
+    let last = printed.rsplit("SUMMARY").next().unwrap();
+    last.split("THE FOLLOWING TABLE IS PRINTED FOR ").skip(1).map(str::to_owned).collect()
+}
+
+#[test]
+fn contact_tables_have_the_columns_and_the_points_of_their_request() {
+    let requests = "*CONTACT PRINT, SLAVE=SEC, MASTER=PRI, NSET=CORNER, TOTALS=YES, SUMMARY=NO\nCPRESS,CSLIP2\n\
+        *CONTACT PRINT\nCFT,CMN,XN,CSTATUS\n*CONTACT PRINT, SLAVE=SEC\nCDSTRESS\n";
+    let text = DECK.replacen("*CONTACT PRINT, FREQUENCY=3\nCSTRESS,CDISP\n", requests, 1);
+    let text = text.replacen("*MATERIAL", "*NSET, NSET=CORNER\n11,12\n*MATERIAL", 1);
+    let directory = solved_deck(&text, 4);
+    let tables = tables(&directory);
+    let [corner, statuses, viscous, ..] = &tables[..] else { panic!("{tables:?}") };
+    assert!(corner.starts_with("NODES OF NODE SET CORNER IN CONTACT PAIR (SEC,PRI)"), "{corner}");
+    let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let lines: Vec<Vec<String>> = corner.lines().map(words).filter(|words| !words.is_empty()).collect();
+    assert_eq!(lines[1], ["NODE", "STATUS", "CPRESS", "CSLIP2"]);
+    assert_eq!(lines[2], ["11", "CL", "1.000000E+01", "0.000000E+00"]);
+    assert_eq!(lines[3][..3], ["12", "CL", "1.000000E+01"]);
+    assert_eq!(lines[4], ["TOTAL", "2.000000E+01", "0.000000E+00"], "{corner}");
+    assert!(!corner.contains("MAXIMUM"), "{corner}");
+    assert_eq!(words(statuses.lines().nth(4).unwrap()), ["11", "CL"]);
+    // 10 over the unit square between the cubes, whose corner is the origin: moment (5, -5, 0), centre (½, ½, 1).
+    for part in [
+        "CFT1           CFT2           CFT3           CFTM\n      TOTAL    0.000000E+00   0.000000E+00   1.000000E+01",
+        "CMN1           CMN2           CMN3           CMNM",
+        "XN1            XN2            XN3\n      TOTAL    5.000000E-01   5.000000E-01   1.000000E+00",
+    ] {
+        assert!(statuses.contains(part), "{part} is missing in\n{statuses}");
+    }
+    assert_eq!(words(viscous.lines().nth(2).unwrap()), ["NODE", "STATUS", "CDPRESS", "CDSHEAR1", "CDSHEAR2"]);
+    assert!(viscous.contains("MAXIMUM"), "{viscous}");
+}
+
+#[test]
+fn history_has_the_totals_that_are_asked_for() {
+    let directory = solved_deck(&DECK.replacen("CSTRESS,CDISP", "CSTRESS,CFTM,XT1", 1), 4);
+    for (name, expected) in [("CFS3", 0.0), ("XN1", 0.5), ("XN3", 1.0), ("CFT3", 10.0), ("CFTM", 10.0), ("XT2", 0.5)] {
+        let last = *numbers(&directory, "job_history.csv", &format!("{name}[SEC_PRI]")).last().unwrap();
+        assert!((last - expected).abs() < 1e-9, "{name} is {last}");
+    }
+    let header = fs::read_to_string(directory.path().join("job_history.csv")).unwrap();
+    let header = header.lines().next().unwrap();
+    assert!(!header.contains("CMN") && !header.contains("XS"), "{header}");
+}
+
+#[test]
+fn the_results_file_is_there_when_it_is_asked_for_and_replaces_an_old_one() {
+    let directory = solved(4);
+    let text = fs::read_to_string(directory.path().join("job.fil")).unwrap();
+    let stream: String = text.lines().collect();
+    assert!(text.lines().all(|line| line.len() == 80));
+    // *NODE FILE, FREQUENCY=3: increments 3 and 4, no contact.
+    for (part, count) in [("I 42000", 2), ("I 3101", 32), ("I 41503", 0), ("I 3101I 215", 2)] {
+        assert_eq!(stream.matches(part).count(), count, "{part}");
+    }
+    let silent = DECK.replacen("*NODE FILE, FREQUENCY=3\nU\n", "", 1);
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("job.fil"), "old").unwrap();
+    let model = deck::read_text(&silent, Dialect::Abaqus).model.unwrap();
+    let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| ());
+    let prepared = Arc::new(prepared.unwrap_or_else(|e| panic!("{e:?}")));
+    ResultWriter::create(directory.path(), "job", prepared, WriteOptions::default()).unwrap();
+    assert!(!directory.path().join("job.fil").exists());
+}
+
+#[test]
+fn requests_that_cannot_be_met_are_refused_with_line_reason_and_remedy() {
+    use crate::diagnostic::Severity;
+    let line = 1 + DECK.lines().position(|line| line == "CSTRESS,CDISP").unwrap() as u32;
+    for (word, severity, message, remedy) in [
+        ("CPRES", Severity::Error, "there is no output variable CPRES", "did you mean CPRESS?"),
+        ("CTRQ", Severity::Error, "CTRQ is not offered: axisymmetric models offer it", "CMN, CMS and CMT"),
+        ("HFL", Severity::Error, "heat transfer", "leave it out"),
+        ("FSLIP", Severity::Error, "Abaqus/Explicit offers it", "CSLIP1"),
+        ("CFORCE", Severity::Warning, "CFORCE is not written", "variables are CSTRESS"),
+    ] {
+        let reading = deck::read_text(&DECK.replacen("CSTRESS,CDISP", &format!("CSTRESS,{word}"), 1), Dialect::Abaqus);
+        let found = reading.diagnostics.iter().find(|d| d.message.contains(word));
+        let found = found.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
+        assert_eq!((found.severity, found.place.line, found.keyword.as_str()), (severity, line, "*CONTACT PRINT"));
+        assert!(found.message.contains(message) && found.remedy.contains(remedy), "{found:?}");
+        assert_eq!(reading.model.is_some(), severity == Severity::Warning);
+    }
+    for (from, to, message) in [
+        ("*CONTACT PRINT", "*CONTACT PRINT, SLAVE=SECC", "there is no surface SECC"),
+        ("*CONTACT PRINT", "*CONTACT PRINT, SLAVE=PRI", "no contact pair has these surfaces"),
+        ("*CONTACT PRINT", "*CONTACT PRINT, NSET=NOWHERE", "there is no node set NOWHERE"),
+        ("U,RF", "U,RG", "there is no output variable RG"),
+    ] {
+        let reading = deck::read_text(&DECK.replacen(from, to, 1), Dialect::Abaqus);
+        assert!(
+            reading.diagnostics.iter().any(|d| d.message.contains(message)),
+            "{message}: {:?}",
+            reading.diagnostics
+        );
+        assert!(reading.model.is_none(), "{message}");
+    }
 }
 
 #[test]
@@ -174,7 +280,7 @@ fn a_stopped_run_gets_what_its_last_increment_lacked() {
     assert_eq!(numbers(&directory, "job_contact.csv", "increment"), [2.0; 4], "written because the run ends");
     assert_eq!(frames(&directory), 1);
     let printed = fs::read_to_string(directory.path().join("job.dat")).unwrap();
-    assert_eq!(printed.matches("SUMMARY").count(), 1, "{printed}");
+    assert_eq!(printed.matches("SUMMARY").count(), 2, "the contact log of increment 1, and the end:\n{printed}");
     assert!(printed.contains("CONTACT PAIR (SEC,PRI)"));
 }
 
