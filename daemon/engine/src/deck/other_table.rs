@@ -180,7 +180,6 @@ pub const OTHER: &[Keyword] = &[
     other("*NORMAL", SOLIDS),
     other("*PRE-TENSION SECTION", SOLIDS),
     other("*RELEASE", SOLIDS),
-    noted("*RIGID BODY", SOLIDS, &[P::optional("ELSET")]),
     other("*RIGID SURFACE", SOLIDS),
     other("*ROTARY INERTIA", SOLIDS),
     other("*SECTION CONTROLS", SOLIDS),
