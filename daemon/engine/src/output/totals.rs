@@ -60,11 +60,10 @@ impl Resultants {
     /// A family by its name; `None` for a name that is none.
     pub(super) fn family(&self, name: &str) -> Option<[f64; 3]> {
         let rows = [&self.force, &self.moment, &self.centre];
-        let found = FAMILIES.iter().zip(rows).find_map(|(names, values)| {
+        FAMILIES.iter().zip(rows).find_map(|(names, values)| {
             let position = names.iter().position(|known| *known == name)?;
             Some(values[position])
-        });
-        found
+        })
     }
 }
 
