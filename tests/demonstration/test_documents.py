@@ -15,6 +15,7 @@ README = (support.ROOT / "README.md").read_text(encoding="utf-8")
 DOCUMENTS = [
     *support.ROOT.glob("*.md"),
     *support.ROOT.glob("docs/*.md"),
+    *support.ROOT.glob("docs/laws/*.md"),
     *support.ROOT.glob("*/README.md"),
     *support.ROOT.glob("clients/*/README.md"),
 ]
