@@ -85,6 +85,11 @@ def differences(before, after, change):
     changed = [key for key, status in before.statuses.items() if after.statuses.get(key) != status]
     # A point that just touches may be told as either.
     changed = [k for k in changed if abs(before.clearances[k]) > TOUCH * motion or pressed(before, k, strength)]
+    # Nor does a dashpot that gives next to nothing decide.
+    apart = {"OP", "VD"}
+    changed = [
+        k for k in changed if pressed(before, k, strength) or not {before.statuses[k], after.statuses.get(k)} <= apart
+    ]
     if changed:
         raise ValueError(f"other contact statuses at {changed[:5]}")
     moved = {key: turn @ after.displacements[key] for key in before.displacements}
@@ -98,7 +103,7 @@ def differences(before, after, change):
         "reaction": relative(before.reactions, reactions(before, after, change), force, strength),
         "contact force": relative(before.contact_forces, contact, force, strength),
         "total": relative(before.totals, totals(before, after, change), force, strength),
-        "energy": relative(before.energies, energies, 1.0),
+        "energy": relative(before.energies, energies, 1.0, strength * motion),
     }
 
 

@@ -43,7 +43,7 @@ def test_a13_the_nonlinear_curve_has_its_values(write_deck, tmp_path, data):
         for h, pressure in zip(*PUBLISHED, strict=True):
             assert curve(h, 100.0, 1e4, 0.01, 0.03, 0.0) == pytest.approx(pressure, rel=1e-12)
     before, lines = 0.0, []
-    overclosures = [-0.1 * e, 0.1 * e, lower * e, 0.6 * e, e, 1.7 * e, 0.4 * e]
+    overclosures = [-0.3 * e, 0.1 * e, lower * e, 0.6 * e, e, 1.7 * e, 0.4 * e]
     for h in overclosures:
         lines += step("*BOUNDARY", f"{node()}, 3, 3, {-h!r}")
         before = h
