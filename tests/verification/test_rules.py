@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import pytest
 
 import support
+from verification.columns import Block, stack
 from verification.points import Point, deck, node, step
 
 PRESS = ["*CLOAD", f"{node()}, 3, -1."]
@@ -219,6 +220,40 @@ def test_v15_damping_on_hard_kinematic_contact_is_a_warning(write_deck):
     done, _ = check(write_deck, rule(behavior, "", steps=EXPLICIT))
     told = [line for line in (done.stdout + done.stderr).splitlines() if "*CONTACT DAMPING" in line.upper()]
     assert any("warning" in line.lower() for line in told), done.stdout + done.stderr
+
+
+def explicit_blocks(behavior, *model):
+    """Two deformable blocks in a pair of Abaqus/Explicit."""
+    blocks = {
+        "TOP": Block((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (1, 1, 1), 500.0),
+        "BOTTOM": Block((-0.5, -0.5, -1.0), (1.5, 1.5, 0.0), (1, 1, 1), 1000.0),
+    }
+    lines = [*model, "*BOUNDARY", "BOTTOM_ALL, 1, 3", "*STEP", "*DYNAMIC, EXPLICIT", ", 0.01", "*END STEP"]
+    return stack(blocks, behavior, lines)
+
+
+def findings(write_deck, text):
+    """What `check` tells, line by line."""
+    done = support.call("check", write_deck(text))
+    assert done.returncode == 2 and "panicked" not in done.stderr
+    return (done.stdout + done.stderr).splitlines()
+
+
+def test_v05_no_separation_needs_pure_weighting(write_deck):
+    """Two deformable surfaces are balanced unless WEIGHT says otherwise."""
+    text = explicit_blocks(["*SURFACE BEHAVIOR, NO SEPARATION"])
+    assert any("balanced" in line and "NO SEPARATION" in line for line in findings(write_deck, text))
+
+
+@pytest.mark.parametrize("constraint", ["KINEMATIC", "PENALTY"])
+def test_v19_a_rigid_surface_is_no_secondary_of_kinematic_contact(write_deck, constraint):
+    rigid = ["*NODE, NSET=REFERENCE", "999, 0.5, 0.5, 0.5", "*RIGID BODY, REF NODE=999, ELSET=ETOP"]
+    text = explicit_blocks(["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"], *rigid)
+    pair = "*CONTACT PAIR, INTERACTION=SI, TYPE=NODE TO SURFACE"
+    assert pair in text
+    text = text.replace(pair, f"*CONTACT PAIR, INTERACTION=SI, MECHANICAL CONSTRAINT={constraint}")
+    told = [line for line in findings(write_deck, text) if "rigid surface cannot be the secondary" in line]
+    assert bool(told) == (constraint == "KINEMATIC")
 
 
 def test_every_finding_comes_at_once(write_deck):
