@@ -238,7 +238,7 @@ class OpenRequest:
     deck: String
 
 
-QUANTITIES = ("length", "force", "pressure", "acceleration", "area", "energy", "time", "count")
+QUANTITIES = ("length", "force", "pressure", "acceleration", "area", "energy", "time", "count", "angle", "moment")
 
 
 @dataclass

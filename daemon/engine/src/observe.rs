@@ -16,6 +16,11 @@ impl Simulation {
         let work = &mut self.work;
         prepared.contact.relief(&self.state.forces, &mut work.relief);
         prepared.contact.overclosures(&work.free, &work.relief, &self.state.motions, &mut work.overclosures);
+        let moment = Self::moment(&prepared, self.state.step as usize, self.state.step_time);
+        let begun = self.state.counts.iter().any(|c| c.increments > 0);
+        for i in (0..prepared.points.len()).filter(|&i| begun && moment.penetration_max(i).is_some()) {
+            self.work.overclosures[i] = self.state.penetrations[i];
+        }
         self.refresh();
     }
 

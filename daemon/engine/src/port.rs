@@ -28,6 +28,10 @@ pub enum Quantity {
     Time,
     /// Whole number.
     Count,
+    /// \[radian\]
+    Angle,
+    /// [force·length]
+    Moment,
 }
 
 /// One scalar port.

@@ -67,6 +67,10 @@ pub(crate) struct Work {
     pub rows: Vec<Row>,
     /// Multipliers of augmented Lagrange.
     pub multipliers: Vec<f64>,
+    /// Their overclosures.
+    pub penetrations: Vec<f64>,
+    /// By how much the onsets of curves move in an augmentation.
+    pub gaps: Vec<f64>,
     /// How often each point has changed its status in the attempt.
     pub changes: Vec<u8>,
     pub verdicts: Vec<(u32, Verdict)>,
@@ -129,6 +133,7 @@ impl Simulation {
             latched: vec![false; points],
             stuck: vec![false; points],
             multipliers: vec![0.0; points],
+            penetrations: vec![0.0; points],
             origins: vec![0.0; 2 * points],
             viscous: vec![0.0; n],
             removed: vec![0.0; n],
@@ -158,6 +163,8 @@ impl Simulation {
             scratch: vec![0.0; 2 * n],
             rows: Vec::with_capacity(n),
             multipliers: vec![0.0; points],
+            penetrations: vec![0.0; points],
+            gaps: Vec::new(),
             changes: Vec::with_capacity(points),
             verdicts: Vec::with_capacity(points),
             given: Vec::new(),
@@ -316,7 +323,7 @@ impl Simulation {
         self.state.easy_increments = 0;
         self.state.counts.push(WorkCounts::default());
         self.remove_pairs();
-        // Allowed overclosures begin with the step.
+        self.begin_overclosures();
         self.recompute();
     }
 }

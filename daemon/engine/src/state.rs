@@ -56,6 +56,8 @@ pub struct State {
     pub stuck: Vec<bool>,
     /// Multipliers of augmented Lagrange at each contact point \[pressure\].
     pub multipliers: Vec<f64>,
+    /// Overclosures of the points of augmented Lagrange, which have more digits than forces give \[length\].
+    pub penetrations: Vec<f64>,
     /// Relative tangential displacement at which each contact point sticks or would, first tangents then second [length].
     pub origins: Vec<f64>,
     /// Force of the dashpot of each row at the end of the last increment \[force\].
@@ -146,6 +148,7 @@ impl State {
                 s.latched.len(),
                 s.stuck.len(),
                 s.multipliers.len(),
+                s.penetrations.len(),
                 s.origins.len(),
                 s.viscous.len(),
                 s.removed.len(),
@@ -186,6 +189,7 @@ mod tests {
             latched: vec![false, true, false],
             stuck: vec![false, false, true],
             multipliers: vec![0.0, 7.5, 0.0],
+            penetrations: vec![0.0, 1e-7, 0.0],
             origins: vec![-1e-9; 6],
             viscous: vec![-0.25; 3],
             removed: vec![0.0; 3],

@@ -70,6 +70,8 @@ fn quantity(quantity: port::Quantity) -> Quantity {
         port::Quantity::Energy => Quantity::Energy,
         port::Quantity::Time => Quantity::Time,
         port::Quantity::Count => Quantity::Count,
+        port::Quantity::Angle => Quantity::Angle,
+        port::Quantity::Moment => Quantity::Moment,
     }
 }
 

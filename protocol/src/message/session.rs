@@ -117,6 +117,10 @@ choice! {
         Time,
         /// Whole number.
         Count,
+        /// \[radian\]
+        Angle,
+        /// [force·length]
+        Moment,
     } default Count
 }
 

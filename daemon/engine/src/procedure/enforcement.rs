@@ -70,13 +70,13 @@ impl Simulation {
                     counts.solves.factorizations += solved.factorizations;
                 }
                 // Points that nothing holds yet may be about to stick or to close.
-                Err(SolveFailure::Unheld { .. }) if !rescued && self.rescue(&moment) => {
+                Err(_) if !rescued && self.rescue(&moment) => {
                     rescued = true;
                     continue;
                 }
                 Err(failure) => return Err(failure),
             }
-            let changed = self.change_status(&moment)? | self.change_sticking(&moment)?;
+            let changed = self.change_status(&moment)? | self.change_sticking(&moment);
             if changed {
                 counts.solves.severe_discontinuity_iterations += 1;
                 continue;
@@ -84,10 +84,20 @@ impl Simulation {
             if self.follow_clearances(&moment, size) {
                 continue;
             }
-            if !self.augment(&moment) {
-                return Ok(counts);
+            self.note_penetrations(&moment);
+            loop {
+                match self.augment(&moment) {
+                    Augmented::Enough => return Ok(counts),
+                    Augmented::Solved => counts.augmentations += 1,
+                    Augmented::ToSolve => {
+                        counts.augmentations += 1;
+                        break;
+                    }
+                }
+                if counts.augmentations > ROUNDS_MAX {
+                    return Err(SolveFailure::Unsettled);
+                }
             }
-            counts.augmentations += 1;
         }
         Err(SolveFailure::Unsettled)
     }
@@ -226,13 +236,18 @@ impl Simulation {
     }
 
     /// Rough friction: closed points stick, open ones do not; whether a row changed.
-    fn change_sticking(&mut self, moment: &Moment<'_>) -> Result<bool, SolveFailure> {
+    ///
+    /// There may be no such state: a point that opens loses its shear, springs back, and is pulled off again from where it stuck.
+    /// A point whose sticking changes more than [`CHANGES_MAX`] times has opened for good as far as its old place goes: in this
+    /// increment it slides freely where it is closed, and sticks from where it ends.
+    fn change_sticking(&mut self, moment: &Moment<'_>) -> bool {
         let points = moment.plan.points();
         let mut changed = false;
         for (k, tangential) in (points..).zip(&moment.plan.tangential) {
             let point = tangential.point as usize;
             let work = &mut self.work;
-            let wanted = moment.sticks(point, work.closed[point], self.state.closed[point]);
+            let wanted = moment.sticks(point, work.closed[point], self.state.closed[point])
+                && work.changes[point] <= CHANGES_MAX;
             if wanted == (work.rows[k].wall == Wall::TwoSided) {
                 continue;
             }
@@ -240,13 +255,10 @@ impl Simulation {
             work.closed[k] = wanted;
             changed = true;
             if tangential.direction == 0 {
-                work.changes[point] += 1;
-                if work.changes[point] > CHANGES_MAX {
-                    return Err(SolveFailure::NotConverged { points: vec![tangential.point] });
-                }
+                work.changes[point] = work.changes[point].saturating_add(1);
             }
         }
-        Ok(changed)
+        changed
     }
 
     /// Gives tangential dashpots the coefficient at the clearance that was found; whether one changed.
@@ -268,26 +280,104 @@ impl Simulation {
         changed
     }
 
-    /// Augmented Lagrange: whether a penetration exceeded its tolerance, in which case every multiplier has been updated.
-    fn augment(&mut self, moment: &Moment<'_>) -> bool {
+    /// Remembers the penetrations that a solve found.
+    fn note_penetrations(&mut self, moment: &Moment<'_>) {
+        let work = &mut self.work;
+        work.penetrations.clear();
+        let found = |i: usize| if moment.penetration_max(i).is_some() { work.overclosures[i] } else { 0.0 };
+        work.penetrations.extend((0..moment.plan.points()).map(found));
+    }
+
+    /// Augmented Lagrange: where a penetration exceeds its tolerance every multiplier is updated.
+    fn augment(&mut self, moment: &Moment<'_>) -> Augmented {
         let points = moment.plan.points();
         let too_deep = (0..points).any(|i| {
             let Some((tolerance, clearance)) = moment.penetration_max(i) else { return false };
-            let h = self.work.overclosures[i];
+            let h = self.work.penetrations[i];
             // A multiplier that is too large holds a point off.
             let held_off = -(h + clearance) > tolerance && self.work.forces[i] != 0.0;
             h > tolerance || held_off
         });
         if !too_deep {
+            return Augmented::Enough;
+        }
+        let mut gaps = std::mem::take(&mut self.work.gaps);
+        gaps.clear();
+        gaps.resize(moment.plan.count(), 0.0);
+        let mut plain = true;
+        for i in 0..points {
+            let Some((_, clearance)) = moment.penetration_max(i) else {
+                plain &= !self.work.rows[i].has_curve();
+                continue;
+            };
+            let work = &mut self.work;
+            let pressure = work.rows[i].law(&self.prepared.contact.behaviors, work.penetrations[i]).pressure;
+            if pressure != 0.0 {
+                gaps[i] = work.penetrations[i] + clearance;
+            }
+            work.multipliers[i] = pressure;
+            let dashpot = work.rows[i].dashpot;
+            plain &= dashpot.is_none();
+            work.rows[i] = moment.normal_row(&self.state, i, false, pressure);
+            work.rows[i].dashpot = dashpot;
+        }
+        plain &= self.work.rows[points..].iter().all(|row| row.dashpot.is_none());
+        let solved = plain && self.correct(moment, &gaps);
+        self.work.gaps = gaps;
+        if solved { Augmented::Solved } else { Augmented::ToSolve }
+    }
+
+    /// A step of augmented Lagrange with the closed points as they are; whether they stay that.
+    ///
+    /// The penetrations that are left come out of the last ones, with all their digits: `h_free − W F` has lost them.
+    fn correct(&mut self, moment: &Moment<'_>, gaps: &[f64]) -> bool {
+        let prepared = self.prepared.clone();
+        let points = moment.plan.points();
+        let work = &mut self.work;
+        work.overclosures[..points].iter_mut().zip(&work.penetrations).enumerate().for_each(|(i, (h, exact))| {
+            if moment.penetration_max(i).is_some() {
+                *h = *exact;
+            }
+        });
+        let mut unknowns = Unknowns {
+            forces: &mut work.forces,
+            relief: &mut work.relief,
+            closed: &mut work.closed,
+            overclosures: &mut work.overclosures,
+            motions: &mut work.motions,
+            springs: &mut work.springs,
+        };
+        if !self.solver.correct(&prepared.contact, &work.rows, gaps, &mut unknowns) {
             return false;
         }
-        for i in (0..points).filter(|&i| moment.penetration_max(i).is_some()) {
-            let pressure = self.work.rows[i].law(&self.prepared.contact.behaviors, self.work.overclosures[i]).pressure;
-            self.work.multipliers[i] = pressure;
-            let dashpot = self.work.rows[i].dashpot;
-            self.work.rows[i] = moment.normal_row(&self.state, i, false, pressure);
-            self.work.rows[i].dashpot = dashpot;
+        let forces = work.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        let (force_rounding, slack) = (FORCE_ROUNDING * forces, OVERCLOSURE_ROUNDING * work.scale);
+        let stays = |(i, row): (usize, &crate::solve::contact::Row)| match row.wall {
+            Wall::TwoSided => true,
+            Wall::OneSided if work.closed[i] => work.forces[i] >= -force_rounding,
+            Wall::OneSided => work.overclosures[i] <= row.position + slack,
+            Wall::None if i < points && moment.penetration_max(i).is_some() => {
+                let pulls = self.state.latched[i] || work.forces[i] > force_rounding;
+                let pressure = row.law(&prepared.contact.behaviors, work.overclosures[i]).pressure;
+                if work.closed[i] { pulls } else { pressure <= 0.0 }
+            }
+            Wall::None => true,
+        };
+        if !work.rows.iter().enumerate().all(stays) {
+            return false;
         }
+        self.note_penetrations(moment);
         true
     }
+}
+
+/// What became of a step of augmented Lagrange.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Augmented {
+    /// Every penetration is within its tolerance.
+    Enough,
+    /// Multipliers have grown and the solution has followed.
+    Solved,
+    /// Multipliers have grown; the solution has to be found again.
+    ToSolve,
 }

@@ -66,22 +66,36 @@ enum Source<'a> {
 /// Lines of a step in port order: boundaries, then loads, as the deck has them.
 fn lines(model: &Model, step: usize) -> Vec<Line<'_>> {
     let step = &model.steps[step];
-    let boundaries = step.boundaries.iter().map(|b| Line {
-        name: format!("boundary.{}.{}", b.region_name, b.direction + 1),
-        quantity: Quantity::Length,
-        description: format!("Prescribed displacement {} of {}", b.direction + 1, b.region_name),
+    // Directions of hidden nodes are rotations of their reference node: degrees of freedom 4 to 6.
+    let dof = |nodes: &[NodeId], direction: u8| {
+        nodes.first().map_or(direction + 1, |&node| model.mesh.dof_of(node, direction))
+    };
+    let boundaries = step.boundaries.iter().map(move |b| Line {
+        name: format!("boundary.{}.{}", b.region_name, dof(&b.nodes, b.direction)),
+        quantity: if dof(&b.nodes, b.direction) > 3 { Quantity::Angle } else { Quantity::Length },
+        description: match dof(&b.nodes, b.direction) {
+            dof @ 4.. => format!("Prescribed rotation {dof} of {}", b.region_name),
+            dof => format!("Prescribed displacement {dof} of {}", b.region_name),
+        },
         magnitude: b.magnitude,
         amplitude: b.amplitude,
         source: Source::Boundary(b),
     });
-    let loads = step.loads.iter().map(|l| {
+    let loads = step.loads.iter().map(move |l| {
         let region = &l.region_name;
         let (name, quantity, description) = match &l.kind {
-            LoadKind::Concentrated { direction, .. } => (
-                format!("cload.{region}.{}", direction + 1),
-                Quantity::Force,
-                format!("Force in direction {} on each node of {region}", direction + 1),
-            ),
+            LoadKind::Concentrated { direction, nodes } => match dof(nodes, *direction) {
+                dof @ 4.. => (
+                    format!("cload.{region}.{dof}"),
+                    Quantity::Moment,
+                    format!("Moment in degree of freedom {dof} on {region}"),
+                ),
+                dof => (
+                    format!("cload.{region}.{dof}"),
+                    Quantity::Force,
+                    format!("Force in direction {dof} on each node of {region}"),
+                ),
+            },
             LoadKind::FacePressure { label, .. } => (
                 format!("dload.{region}.P{label}"),
                 Quantity::Pressure,

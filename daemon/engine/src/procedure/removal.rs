@@ -31,6 +31,27 @@ impl Simulation {
         }
     }
 
+    /// At the start of a step: allowed overclosures begin with it, and pairs that come back have overclosures again.
+    pub(crate) fn begin_overclosures(&mut self) {
+        let prepared = self.prepared.clone();
+        let step = self.state.step as usize;
+        let (before, now) = (Self::moment(&prepared, step - 1, f64::MAX), Self::moment(&prepared, step, 0.0));
+        // The work space holds the free overclosures at the end of the last step.
+        let old = self.work.free.clone();
+        let coefficients = std::mem::take(&mut self.state.coefficients);
+        self.free_overclosures(&coefficients, 0.0);
+        self.state.coefficients = coefficients;
+        let (state, work) = (&mut self.state, &mut self.work);
+        prepared.contact.relief(&state.forces, &mut work.relief);
+        prepared.contact.overclosures(&work.free, &work.relief, &state.motions, &mut work.overclosures);
+        for i in (0..prepared.points.len()).filter(|&i| now.penetration_max(i).is_some()) {
+            state.penetrations[i] = match before.is_active(i) {
+                true => state.penetrations[i] + (work.free[i] - old[i]),
+                false => work.overclosures[i],
+            };
+        }
+    }
+
     /// Takes what removed pairs still carry at a step time out of the problem in the work space; whether there is any.
     pub(crate) fn take_removed(&mut self, time: f64) -> bool {
         if self.state.removed.iter().all(|f| *f == 0.0) {

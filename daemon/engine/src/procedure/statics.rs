@@ -7,6 +7,7 @@ use crate::procedure::interference;
 use crate::procedure::loading::value_at;
 use crate::simulation::{AdvanceOutcome, CutbackReport, IncrementReport, Simulation, StatusChange, Watch};
 use crate::solve::condensed::Response;
+use crate::solve::contact::Wall;
 
 /// Automatic increments: growth after two increments in a row without a cutback (Abaqus: 1.5 after two easy ones). How many
 /// iterations they took says nothing: each solve is convex and ends, from any start.
@@ -182,6 +183,10 @@ impl Simulation {
             prepared.loose.settle(&prepared.condensed, &coefficients, &work.forces, &mut work.motions, &mut work.loose);
             prepared.contact.overclosures(&work.free, &work.relief, &work.motions, &mut work.overclosures);
         }
+        let moment = Self::moment(&prepared, self.state.step as usize, time);
+        for (i, exact) in work.penetrations.iter().enumerate().filter(|&(i, _)| moment.penetration_max(i).is_some()) {
+            work.overclosures[i] = *exact;
+        }
         let response = Response { coefficients: &coefficients, forces: &work.forces, motions: &work.motions };
         prepared.condensed.tangential(&prepared.contact, response, &mut work.scratch, &mut work.tangential);
         let (points, n) = (prepared.points.len(), prepared.rows.count());
@@ -225,7 +230,16 @@ impl Simulation {
         let (state, work) = (&mut self.state, &mut self.work);
         for i in 0..points {
             state.latched[i] |= work.closed[i] && moment.latches(i) && moment.is_active(i);
-            state.stuck[i] = moment.sticks(i, work.closed[i], state.closed[i]);
+            // Sticking under rough friction is what the tangential rows say.
+            state.stuck[i] = false;
+            if moment.penetration_max(i).is_some() {
+                state.penetrations[i] = work.penetrations[i];
+            }
+        }
+        for (row, tangential) in work.rows[points..].iter().zip(&prepared.rows.tangential) {
+            state.stuck[tangential.point as usize] |= row.wall == Wall::TwoSided;
+        }
+        for i in 0..points {
             if work.closed[i] && !state.stuck[i] {
                 for at in [i, n + i] {
                     state.slip[at] += work.tangential[at] - state.tangential[at];

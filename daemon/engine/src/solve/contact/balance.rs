@@ -44,15 +44,15 @@ const LOAD_ROUNDING: f64 = 1e-10;
 /// Work space of the balance.
 #[derive(Default)]
 pub(super) struct BalanceWork {
-    held: HeldCompliance,
-    steps: Steps,
+    pub held: HeldCompliance,
+    pub steps: Steps,
 }
 
 /// `W + D ε⁻¹ Dᵀ` and the springs that went into it.
 #[derive(Default)]
-struct HeldCompliance {
+pub(super) struct HeldCompliance {
     compliance: Dense,
-    springs: Vec<f64>,
+    pub springs: Vec<f64>,
 }
 
 /// How far the closed points hold the motions that are still loaded.
@@ -75,6 +75,8 @@ pub(super) struct Steps {
     /// `S` in units of the springs.
     stiffness: Dense,
     pub factor: Vec<f64>,
+    /// Whether that is the factor of the last step: closed points hold every motion.
+    pub is_held: bool,
     scratch: DenseScratch,
     pub response: Vec<f64>,
     pub newton: Vec<f64>,
@@ -135,16 +137,7 @@ impl ContactSolver {
                 self.forget_factor();
             }
             let scale = steps.free_overclosures(system, problem, unknowns);
-            let view = system.held(
-                problem.rows,
-                Some(match &system.structure {
-                    Structure::Dense(_) => Compliance::Dense(&held.compliance),
-                    Structure::Sparse(sparse) => Compliance::Sparse(
-                        sparse,
-                        Some(Springs { gaps: &system.gap_motions, springs: &held.springs, resisted: &system.resisted }),
-                    ),
-                }),
-            );
+            let view = held.view(system, problem.rows);
             view.relief(unknowns.forces, unknowns.relief);
             let done = match self.solve_held(&view, &steps.free, scale, unknowns) {
                 Ok(done) => done,
@@ -171,6 +164,7 @@ impl ContactSolver {
             }
             let slow = worst > SLOW * last;
             let hold = self.newton_step(system, &view, &held.springs, steps);
+            steps.is_held = hold == Hold::Full;
             let stiffened = self.adjust_springs(system, unknowns.springs, slow && hold != Hold::Full);
             for m in 0..k {
                 steps.safe[m] = unknowns.motions[m] + steps.residual[m] / held.springs[m];
@@ -286,6 +280,18 @@ impl ContactSolver {
 }
 
 impl HeldCompliance {
+    /// The rows of a system with the springs that are held.
+    pub fn view<'a>(&'a self, system: &'a ContactSystem, rows: &'a [Row]) -> View<'a> {
+        let compliance = match &system.structure {
+            Structure::Dense(_) => Compliance::Dense(&self.compliance),
+            Structure::Sparse(sparse) => Compliance::Sparse(
+                sparse,
+                Some(Springs { gaps: &system.gap_motions, springs: &self.springs, resisted: &system.resisted }),
+            ),
+        };
+        system.held(rows, Some(compliance))
+    }
+
     /// Takes springs over, with `W + D ε⁻¹ Dᵀ` where there is a `W`; whether that is another one than before.
     fn hold(&mut self, system: &ContactSystem, springs: &[f64]) -> bool {
         if self.springs == springs {
@@ -363,8 +369,11 @@ impl Steps {
         system.gap_motions.multiply_add(&way, &mut overclosures);
         let largest = overclosures.iter().fold(0.0f64, |m, h| m.max(h.abs()));
         // A two-sided wall resists both ways.
-        let gives =
-            |(h, row): (&f64, &Row)| *h <= 1e-9 * largest && (row.wall != Wall::TwoSided || *h >= -1e-9 * largest);
+        let gives = |(h, row): (&f64, &Row)| match row.wall {
+            Wall::None if !row.has_curve() => true,
+            Wall::TwoSided => h.abs() <= 1e-9 * largest,
+            Wall::None | Wall::OneSided => *h <= 1e-9 * largest,
+        };
         let opens = overclosures.iter().zip(problem.rows).all(gives);
         (opens && pushed > 0.0).then_some(SolveFailure::Unheld { motions: way })
     }

@@ -8,9 +8,10 @@
 //!
 //! The factor at hand is that of `M = W + C + D ε⁻¹ Dᵀ`. With `x = dα + ε⁻¹ r` the equations are `M dF = g + D x` and
 //! `S x = r − Dᵀ M⁻¹ g`, `S = Dᵀ M⁻¹ D`, which the last Newton step has factored. What soft springs and a stiff law cost in digits
-//! comes back.
+//! comes back. A step of augmented Lagrange is the same with `g = h + c0` at its closed points, known to all its digits.
 
-use super::balance::Steps;
+use super::balance::{BalanceWork, Steps};
+use super::row::Row;
 use super::view::View;
 use super::{ContactSolver, ContactSystem, Problem, Unknowns};
 use crate::solve::linear;
@@ -21,6 +22,62 @@ const STEPS: u32 = 2;
 const CORRECTION_MAX: f64 = 1e-6;
 
 impl ContactSolver {
+    /// `dF` into `steps.response` and `x` into `steps.newton` for the gaps and residuals in `steps`.
+    fn respond(&mut self, system: &ContactSystem, view: &View<'_>, springs: &[f64], steps: &mut Steps) -> bool {
+        let k = springs.len();
+        if !self.active_response(view, &steps.gaps, &mut steps.response) {
+            return false;
+        }
+        steps.newton.clear();
+        for m in 0..k {
+            let along: f64 = system.gap_motions.column(m).iter().zip(&steps.response).map(|(d, f)| d * f).sum();
+            let right = if system.resisted[m] { steps.residual[m] - along } else { 0.0 };
+            steps.newton.push(right / springs[m].sqrt());
+        }
+        linear::cholesky_solve(&steps.factor, k, &mut steps.newton);
+        for (m, x) in steps.newton.iter_mut().enumerate() {
+            *x /= springs[m].sqrt();
+            for (gap, d) in steps.gaps.iter_mut().zip(system.gap_motions.column(m)) {
+                *gap += d * *x;
+            }
+        }
+        self.active_response(view, &steps.gaps, &mut steps.response)
+    }
+
+    /// What a change of the onsets by `−gaps` does with the closed points as they are: adds it to forces, motions and overclosures.
+    /// False, with nothing changed, where the last solve left no factor for that.
+    pub fn correct(&mut self, system: &ContactSystem, rows: &[Row], gaps: &[f64], unknowns: &mut Unknowns<'_>) -> bool {
+        let mut work = std::mem::take(&mut self.balance);
+        let BalanceWork { held, steps } = &mut work;
+        steps.gaps.clear();
+        steps.gaps.extend_from_slice(gaps);
+        let k = system.gap_motions.columns;
+        let solved = if k == 0 {
+            steps.newton.clear();
+            self.active_response(&system.held(rows, None), &steps.gaps, &mut steps.response)
+        } else {
+            steps.residual.clear();
+            steps.residual.resize(k, 0.0);
+            steps.is_held && self.respond(system, &held.view(system, rows), &held.springs, steps)
+        };
+        if solved {
+            // dh = −W dF + D dα
+            system.relief(&steps.response, unknowns.relief);
+            unknowns.forces.iter_mut().zip(&steps.response).for_each(|(f, df)| *f += df);
+            unknowns.overclosures.iter_mut().zip(&*unknowns.relief).for_each(|(h, relief)| *h -= relief);
+            for m in (0..k).filter(|&m| system.resisted[m]) {
+                let x = steps.newton[m];
+                unknowns.motions[m] += x;
+                for (h, d) in unknowns.overclosures.iter_mut().zip(system.gap_motions.column(m)) {
+                    *h += d * x;
+                }
+            }
+        }
+        system.relief(unknowns.forces, unknowns.relief);
+        self.balance = work;
+        solved
+    }
+
     /// Refines forces and motions; relief and overclosures follow them.
     pub(super) fn refine(
         &mut self,
@@ -36,27 +93,12 @@ impl ContactSolver {
             steps.gaps.clear();
             steps.gaps.resize(n, 0.0);
             self.law_gaps(unknowns.overclosures, unknowns.forces, &mut steps.gaps);
-            if !self.active_response(view, &steps.gaps, &mut steps.response) {
-                return;
-            }
             steps.residual.clear();
-            steps.newton.clear();
             for m in 0..k {
-                let d = system.gap_motions.column(m);
-                let along = |v: &[f64]| d.iter().zip(v).map(|(d, f)| d * f).sum::<f64>();
-                let missing = if system.resisted[m] { problem.load[m] - along(unknowns.forces) } else { 0.0 };
-                let right = if system.resisted[m] { missing - along(&steps.response) } else { 0.0 };
-                steps.residual.push(missing);
-                steps.newton.push(right / springs[m].sqrt());
+                let carried: f64 = system.gap_motions.column(m).iter().zip(&*unknowns.forces).map(|(d, f)| d * f).sum();
+                steps.residual.push(if system.resisted[m] { problem.load[m] - carried } else { 0.0 });
             }
-            linear::cholesky_solve(&steps.factor, k, &mut steps.newton);
-            for (m, x) in steps.newton.iter_mut().enumerate() {
-                *x /= springs[m].sqrt();
-                for (gap, d) in steps.gaps.iter_mut().zip(system.gap_motions.column(m)) {
-                    *gap += d * *x;
-                }
-            }
-            if !self.active_response(view, &steps.gaps, &mut steps.response) {
+            if !self.respond(system, view, springs, steps) {
                 return;
             }
             let largest = |v: &[f64]| v.iter().fold(0.0f64, |m, f| m.max(f.abs()));
