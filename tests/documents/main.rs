@@ -7,7 +7,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use overclosure::deck::{Effect, Keyword, Parameter, ParameterValue, Placement, differences, keywords};
+use overclosure::deck::{
+    Confidence, Effect, FEATURES, Family, Keyword, Offer, Parameter, ParameterValue, Placement, RULES, differences,
+    keywords,
+};
+use overclosure::diagnostic::Severity;
 
 const START: &str = "<!-- table: generated -->";
 const END: &str = "<!-- end of the table -->";
@@ -54,7 +58,7 @@ fn placement(placement: Placement) -> &'static str {
         Placement::Step => "step",
         Placement::Anywhere => "model or step",
         Placement::Material => "after `*MATERIAL`",
-        Placement::Interaction => "after `*SURFACE INTERACTION`",
+        Placement::Interaction => "after `*SURFACE INTERACTION`, `*GAP`",
     }
 }
 
@@ -117,6 +121,84 @@ fn the_keyword_table_is_the_readers_own() {
     hold("keywords.md", &table);
 }
 
+/// An offer in a cell: whether, and on which condition.
+fn offer(offer: Offer) -> String {
+    match offer {
+        Offer::Yes("") => "yes".into(),
+        Offer::Yes(condition) => format!("yes: {condition}"),
+        Offer::No(_) => "no".into(),
+    }
+}
+
+#[test]
+fn the_availability_tables_are_the_readers_own() {
+    let families: Vec<&str> = Family::ALL.into_iter().map(Family::title).collect();
+    let mut table =
+        format!("## Features\n\n| feature | asked for by | {} | source | how sure |\n", families.join(" | "));
+    table.push_str("|---|---|---|---|---|---|---|---|\n");
+    for feature in FEATURES {
+        let offers: Vec<String> = Family::ALL.into_iter().map(|family| cell(&offer(feature.offer(family)))).collect();
+        let (name, source) = (cell(feature.name), feature.source);
+        let _ = writeln!(
+            table,
+            "| {name} | {} | {} | {} | {} |",
+            cell(feature.keyword),
+            offers.join(" | "),
+            source.section,
+            source.confidence.name()
+        );
+    }
+    table.push_str("\n## Why not\n\n| feature | where | reason | what to do |\n|---|---|---|---|\n");
+    for feature in FEATURES {
+        let mut refused: Vec<(&str, Vec<&str>)> = Vec::new();
+        for family in Family::ALL {
+            let Offer::No(reason) = feature.offer(family) else { continue };
+            match refused.iter_mut().find(|(other, _)| *other == reason) {
+                Some((_, families)) => families.push(family.title()),
+                None => refused.push((reason, vec![family.title()])),
+            }
+        }
+        for (reason, families) in refused {
+            let families = families.join("; ");
+            let _ = writeln!(table, "| {} | {families} | {reason} | {} |", cell(feature.name), feature.remedy);
+        }
+    }
+    table
+        .push_str("\n## Combinations\n\n| where | combination | finding | reason | what to do | source | how sure |\n");
+    table.push_str("|---|---|---|---|---|---|---|\n");
+    for rule in RULES {
+        let families: Vec<&str> = rule.families.iter().copied().map(Family::title).collect();
+        let families = if families.len() == Family::ALL.len() { "everywhere".into() } else { families.join("; ") };
+        let finding = match rule.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let _ = writeln!(
+            table,
+            "| {families} | {} | {finding} | {} | {} | {} | {} |",
+            cell(&rule.combination.replace("the {law} law", "a softened law")),
+            cell(rule.reason),
+            cell(rule.remedy),
+            rule.source.section,
+            rule.source.confidence.name()
+        );
+    }
+    hold("availability.md", &table);
+}
+
+#[test]
+fn what_is_not_read_in_the_manual_says_so() {
+    let sources = FEATURES.iter().map(|feature| feature.source).chain(RULES.iter().map(|rule| rule.source));
+    for source in sources {
+        assert!(!source.section.is_empty());
+        assert!(
+            source.confidence == Confidence::Text || source.section.contains("later releases"),
+            "{}",
+            source.section
+        );
+    }
+}
+
 #[test]
 fn every_keyword_that_has_to_be_read_is_read() {
     let wanted = [
@@ -135,6 +217,13 @@ fn every_keyword_that_has_to_be_read_is_read() {
         "*SURFACE INTERACTION",
         "*SURFACE BEHAVIOR",
         "*CONTACT PAIR",
+        "*CONTACT DAMPING",
+        "*FRICTION",
+        "*CHANGE FRICTION",
+        "*CONTACT CONTROLS",
+        "*CONTACT INTERFERENCE",
+        "*CLEARANCE",
+        "*MODEL CHANGE",
         "*STEP",
         "*STATIC",
         "*CLOAD",

@@ -66,8 +66,8 @@ REFUSALS = [
     Refusal(
         "keyword that changes the answer",
         "*STEP\n",
-        "*RIGID BODY, ELSET=UPPER, REF NODE=1\n*STEP\n",
-        "*RIGID BODY",
+        "*TIE, NAME=T\nSSL, SMA\n*STEP\n",
+        "*TIE",
         ("would change the answer", "*EQUATION"),
     ),
     Refusal(

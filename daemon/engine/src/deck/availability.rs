@@ -63,6 +63,8 @@ pub enum Confidence {
     Text,
     /// The manual shows it as a picture; restored.
     Figure,
+    /// From notes that quote the manual.
+    SecondHand,
     /// From memory of the manual, not read again.
     Memory,
     /// The manual is silent: our choice.
@@ -75,6 +77,7 @@ impl Confidence {
         match self {
             Self::Text => "text of the manual",
             Self::Figure => "restored from a figure of the manual",
+            Self::SecondHand => "notes that quote the manual",
             Self::Memory => "from memory of the manual",
             Self::Choice => "our choice: the manual is silent",
         }
@@ -172,7 +175,7 @@ pub const FEATURES: &[Feature] = &[
         ],
         remedy: "leave PENALTY out",
         blame: Blame::Behavior,
-        source: Citation { section: "*SURFACE BEHAVIOR of later releases", confidence: Confidence::Memory },
+        source: Citation { section: "*SURFACE BEHAVIOR of later releases", confidence: Confidence::SecondHand },
         is_asked: |facts| facts.penalty,
     },
     Feature {
@@ -211,8 +214,8 @@ pub const FEATURES: &[Feature] = &[
         name: "the exponential law",
         keyword: "PRESSURE-OVERCLOSURE=EXPONENTIAL",
         offers: [
-            Yes("straight beyond 6 c0"),
-            Yes("straight beyond 6 c0"),
+            Yes("straight at high overclosure, beyond 6 c0 (the factor is from memory)"),
+            Yes("straight at high overclosure, beyond 6 c0 (the factor is from memory)"),
             Yes("with a largest stiffness, if one is given"),
             No("it belongs to contact pairs"),
         ],
@@ -253,8 +256,12 @@ pub const FEATURES: &[Feature] = &[
         name: "the critical damping fraction",
         keyword: "*CONTACT DAMPING, DEFINITION=CRITICAL DAMPING FRACTION",
         offers: [
-            No("a static or implicit step has no nodal mass to take a fraction of: it belongs to explicit analyses"),
-            No("a static or implicit step has no nodal mass to take a fraction of: it belongs to explicit analyses"),
+            No(
+                "it is a fraction of the critical damping of a nodal mass on its contact stiffness in explicit analyses",
+            ),
+            No(
+                "it is a fraction of the critical damping of a nodal mass on its contact stiffness in explicit analyses",
+            ),
             Yes("0.03 unless given"),
             Yes("0.03 unless given"),
         ],

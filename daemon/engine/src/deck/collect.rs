@@ -83,6 +83,20 @@ fn join_continuations(source: &mut Source<'_>, mut header: Vec<u8>) -> io::Resul
 /// Remedy for an element type that is not solved.
 const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20, C3D20R, T3D2, SPRINGA, SPRING1, SPRING2, MASS, GAPUNI, GAPCYL, GAPSPHER, R3D3 and R3D4 are solved";
 
+/// What to do about an element type that is not solved.
+fn element_type_remedy(name: &str) -> &'static str {
+    let begins = |prefixes: &[&str]| prefixes.iter().any(|prefix| name.starts_with(prefix));
+    if begins(&["ISL", "IRS", "ITT"]) {
+        "nodes slide along slide lines and tubes, and sliding is small here: describe the contact by *CONTACT PAIR"
+    } else if begins(&["INTER"]) {
+        "the contact of two faces is described by *CONTACT PAIR, that of two nodes by *GAP"
+    } else if begins(&["DGAP", "DINTER"]) {
+        "temperatures are not solved for: remove the elements"
+    } else {
+        ELEMENT_TYPES
+    }
+}
+
 /// Kind of a type in upper case, as Abaqus means it.
 fn element_kind(name: &str) -> Option<ElementKind> {
     // GAPUNIT has a temperature too, which nothing here acts on.
@@ -206,7 +220,7 @@ impl Collector<'_> {
                 } else {
                     if !kind.is_empty() {
                         let message = format!("element type {} is not supported", excerpt(kind.as_bytes()));
-                        self.report.error(at, keyword.name, message, ELEMENT_TYPES);
+                        self.report.error(at, keyword.name, message, element_type_remedy(&key(kind)));
                     }
                     Sink::RefusedElements
                 }

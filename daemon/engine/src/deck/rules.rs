@@ -99,7 +99,7 @@ const SOFTENED_PENALTY: Rule = Rule {
         "the {law} law cannot be combined with PENALTY",
         "it enforces hard contact; softened laws are enforced as they are",
         "leave PENALTY or PRESSURE-OVERCLOSURE out",
-        Citation { section: "*SURFACE BEHAVIOR of later releases", confidence: Confidence::Memory },
+        Citation { section: "*SURFACE BEHAVIOR of later releases", confidence: Confidence::SecondHand },
     )
 };
 

@@ -16,13 +16,17 @@ pub fn summary(model: &Model) -> String {
         // Writing into a string cannot fail.
         let _ = writeln!(text, "{key:<14}{value}");
     };
-    line("nodes", mesh.nodes.len().to_string());
+    line("nodes", mesh.node_count().to_string());
     line("elements", elements(model));
     line("sets", format!("{} of nodes, {} of elements", mesh.node_sets.len(), mesh.element_sets.len()));
     line("surfaces", mesh.surfaces.len().to_string());
     line("materials", join(model.materials.iter().map(|material| material.name.as_str())));
     if !model.equations.is_empty() {
         line("equations", model.equations.len().to_string());
+    }
+    for body in &model.rigid_bodies {
+        let label = mesh.node_labels[body.reference.index()];
+        line("rigid body", format!("{} nodes follow node {label}", body.nodes.len()));
     }
     for pair in &model.pairs {
         line("contact pair", describe_pair(model, pair));

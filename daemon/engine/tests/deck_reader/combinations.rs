@@ -166,6 +166,28 @@ fn pressure_penetration_and_general_contact_are_refused_with_a_reason() {
 }
 
 #[test]
+fn contact_elements_that_slide_are_refused_with_a_reason() {
+    for (kind, reason) in [
+        ("ITT31", "sliding is small"),
+        ("ISL21", "sliding is small"),
+        ("IRS22", "sliding is small"),
+        ("INTER4", "*CONTACT PAIR"),
+        ("DGAP", "temperatures"),
+    ] {
+        let text = with("*NSET, NSET=BOTTOM", &format!("*ELEMENT, TYPE={kind}, ELSET=C\n9, 5, 11\n*NSET, NSET=BOTTOM"));
+        refuses(&text, "*ELEMENT", &format!("element type {kind} is not supported"));
+        let listed = listing(&read(&text).diagnostics);
+        assert!(listed.contains(reason), "{listed}");
+    }
+    let text = with(
+        "*STEP\n",
+        "*INTERFACE, ELSET=C\n1.\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR, NO SEPARATION\n1.\n*STEP\n",
+    );
+    refuses(&text, "*INTERFACE", "not supported");
+    refuses(&text, BEHAVIOR, "the linear law cannot be combined with NO SEPARATION");
+}
+
+#[test]
 fn interactions_and_pairs_may_stand_in_explicit_steps() {
     let card = "*SURFACE INTERACTION, NAME=SI\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e6\n\
         *CONTACT PAIR, INTERACTION=SI, SMALL SLIDING\nSECOND, FIRST\n";

@@ -134,7 +134,9 @@ fn friction_is_absent_or_rough() {
 
 #[test]
 fn hcrit_is_a_length() {
-    let model = model(&with(", SMALL SLIDING", ", SMALL SLIDING, HCRIT=0.25"));
+    let text = with(", SMALL SLIDING", ", SMALL SLIDING, HCRIT=0.25");
+    warns(&text, "*CONTACT PAIR", "HCRIT has no effect on the answer");
+    let model = model(&text);
     assert_eq!(model.pairs[0].surfaces().expect("a pair of surfaces").hcrit, Some(0.25));
     for value in ["0.", "-1.", "deep"] {
         let text = with(", SMALL SLIDING", &format!(", SMALL SLIDING, HCRIT={value}"));

@@ -1,15 +1,12 @@
 //! Contact from step to step: `*CONTACT CONTROLS`, `*MODEL CHANGE`, `*CHANGE FRICTION` and `*CONTACT INTERFERENCE` change what
 //! the steps before have left.
 
-use crate::model::{
-    AllowedOverclosure, ContactControls, Enforcement, Friction, Interference, PairMembers, StepContact, SurfaceId,
-};
+use crate::model::{ContactControls, Enforcement, Friction, Interference, PairMembers, StepContact, SurfaceId};
 
 use super::super::card::Card;
 use super::super::data::Row;
 use super::super::lex::{key, unquoted};
 use super::super::report::At;
-use super::super::rules;
 use super::Builder;
 use super::controls::{StatedControls, is_hard};
 use super::layout::StepCards;
@@ -25,7 +22,7 @@ pub struct ContactHistory {
     own: Vec<StatedControls>,
     active: Vec<bool>,
     frictions: Vec<Friction>,
-    interferences: Vec<Option<Interference>>,
+    pub(super) interferences: Vec<Option<Interference>>,
 }
 
 impl Builder<'_> {
@@ -182,52 +179,6 @@ impl Builder<'_> {
         }
     }
 
-    fn interference_card(&mut self, card: &Card, step: u32, history: &mut ContactHistory) {
-        let shrink = card.parameters.has("SHRINK");
-        let amplitude = match self.amplitude(card) {
-            Ok(amplitude) => amplitude,
-            Err(()) => return,
-        };
-        if shrink && step > 0 {
-            self.break_rule(&rules::SHRINK_LATER, card.at, INTERFERENCE, "");
-        }
-        if shrink && amplitude.is_some() {
-            let message = "AMPLITUDE is ignored with SHRINK: the overclosures of the start fade away over the step";
-            self.report.warning(card.at, INTERFERENCE, message, "remove AMPLITUDE");
-        }
-        if card.faulty {
-            return;
-        }
-        let of_elements = card.parameters.word("TYPE") == "ELEMENT";
-        let is_removal = card.parameters.word("OP") == "NEW";
-        if card.first_line().is_none() && !is_removal {
-            let remedy =
-                if of_elements { "write: element set, overclosure" } else { "write: secondary, primary, overclosure" };
-            self.report.error(card.at, INTERFERENCE, "the data line is missing", remedy);
-        }
-        for line in card.lines().iter() {
-            let row = line.row(INTERFERENCE);
-            let (pair, names) =
-                if of_elements { (self.pair_of_elements(&row), 1) } else { (self.pair_of_row(&row), 2) };
-            if row.fields.iter().skip(names + 1).any(|field| !field.is_empty()) {
-                let message = "a direction in which the secondary surface is shifted is not supported and would change the answer";
-                let remedy = "overclosures are resolved along the normals: leave the direction out";
-                self.report.error(row.at, INTERFERENCE, message, remedy);
-                continue;
-            }
-            let allowed = if shrink {
-                row.at_most(names, self.report);
-                Some(AllowedOverclosure::Initial)
-            } else {
-                let value = row.real(names, "overclosure that is allowed", None, self.report);
-                value.map(AllowedOverclosure::Uniform)
-            };
-            let (Some(pair), Some(allowed)) = (pair, allowed) else { continue };
-            let amplitude = amplitude.filter(|_| !shrink);
-            history.interferences[pair] = Some(Interference { allowed, amplitude, step });
-        }
-    }
-
     fn change_friction(&mut self, card: &Card, behind: Option<&Card>, history: &mut ContactHistory) {
         let reset = card.parameters.has("RESET");
         let friction = match (reset, behind) {
@@ -267,7 +218,7 @@ impl Builder<'_> {
     }
 
     /// Pair of the surfaces that a data line begins with.
-    fn pair_of_row(&mut self, row: &Row<'_>) -> Option<usize> {
+    pub(super) fn pair_of_row(&mut self, row: &Row<'_>) -> Option<usize> {
         let (secondary, primary) = (unquoted(row.text(0)), unquoted(row.text(1)));
         if secondary.is_empty() || primary.is_empty() {
             let message = "the line does not name two surfaces";
@@ -275,10 +226,6 @@ impl Builder<'_> {
             return None;
         }
         self.pair_of_surfaces(secondary, primary, row.at, row.keyword)
-    }
-
-    fn pair_of_elements(&mut self, row: &Row<'_>) -> Option<usize> {
-        self.gap_pair(unquoted(row.text(0)), row.at, row.keyword)
     }
 
     /// Position of the pair of two surfaces; `None` when there is none, which is reported, or when it is faulty.
@@ -311,7 +258,7 @@ impl Builder<'_> {
     }
 
     /// Position of the pair that the contact elements of a set make; `None` when there is none, which is reported.
-    fn gap_pair(&mut self, set: &str, at: At, keyword: &'static str) -> Option<usize> {
+    pub(super) fn gap_pair(&mut self, set: &str, at: At, keyword: &'static str) -> Option<usize> {
         let is_it = |pair: &crate::model::ContactPair| {
             matches!(pair.members, PairMembers::Gaps(_)) && key(&pair.name) == key(set)
         };

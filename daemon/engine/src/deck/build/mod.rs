@@ -13,6 +13,7 @@ mod equations;
 mod friction;
 mod gaps;
 mod interactions;
+mod interference;
 mod layout;
 mod loads;
 mod materials;

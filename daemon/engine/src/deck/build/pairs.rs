@@ -199,7 +199,12 @@ impl Builder<'_> {
     fn hcrit(&mut self, text: Option<&str>, at: At) -> Result<Option<f64>, ()> {
         let Some(text) = text else { return Ok(None) };
         match real(text.as_bytes()) {
-            Ok(length) if length > 0.0 => Ok(Some(length)),
+            Ok(length) if length > 0.0 => {
+                let message =
+                    "HCRIT has no effect on the answer: no increment is given up because of a deep overclosure";
+                self.report.warning(at, PAIR, message, "");
+                Ok(Some(length))
+            }
             _ => {
                 let message = format!("HCRIT={text}: not a positive length");
                 self.report.error(at, PAIR, message, "give the overclosure beyond which an increment is not accepted");
