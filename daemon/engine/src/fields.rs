@@ -13,7 +13,7 @@ use crate::solve::reactions;
 pub type ElementStress = Vec<[f64; 6]>;
 
 /// Fields that [`Simulation::field`] knows.
-const FIELDS: &str = "U, RF, S, CPRESS, CSHEAR, CDPRESS, CDSHEAR, COPEN, CSLIP, CSTATUS";
+const FIELDS: &str = "U, UR, RF, RM, S, CPRESS, CSHEAR, CDPRESS, CDSHEAR, COPEN, CSLIP, CSTATUS";
 
 impl Simulation {
     /// Displacements and reactions of all nodes: one backward solve per body.
@@ -164,9 +164,19 @@ impl Simulation {
         let mesh = &self.prepared.model.mesh;
         let nodal = |components: usize, values: Vec<f64>| Field {
             name: name.into(),
-            labels: mesh.node_labels.clone(),
+            labels: mesh.node_labels[..mesh.node_count()].to_vec(),
             components,
             values,
+        };
+        let turning = |values: Vec<[f64; 3]>| Field {
+            name: name.into(),
+            labels: mesh.rotations.iter().map(|(node, _)| mesh.node_labels[node.index()]).collect(),
+            components: 3,
+            values: mesh.rotations.iter().flat_map(|(_, hidden)| values[hidden.index()]).collect(),
+        };
+        let own = |mut values: Vec<[f64; 3]>| {
+            values.truncate(mesh.node_count());
+            values.into_flattened()
         };
         let contact = |components: usize, values: Vec<f64>| Field {
             name: name.into(),
@@ -176,9 +186,15 @@ impl Simulation {
         };
         let points = &self.derived.points;
         match name {
-            "U" => Ok(nodal(3, self.recover().displacement.into_flattened())),
-            "RF" => Ok(nodal(3, self.recover().reaction.into_flattened())),
-            "S" => Ok(nodal(6, self.nodal_stress(&self.recover()).into_flattened())),
+            "U" => Ok(nodal(3, own(self.recover().displacement))),
+            "UR" => Ok(turning(self.recover().displacement)),
+            "RF" => Ok(nodal(3, own(self.recover().reaction))),
+            "RM" => Ok(turning(self.recover().reaction)),
+            "S" => {
+                let mut stress = self.nodal_stress(&self.recover());
+                stress.truncate(mesh.node_count());
+                Ok(nodal(6, stress.into_flattened()))
+            }
             "CPRESS" => Ok(contact(1, points.iter().map(|p| p.pressure).collect())),
             "COPEN" => Ok(contact(1, points.iter().map(|p| p.clearance).collect())),
             "CSTATUS" => Ok(contact(1, points.iter().map(|p| f64::from(p.status.number())).collect())),

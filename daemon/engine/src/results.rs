@@ -232,7 +232,7 @@ pub struct CutbackReport {
 /// A field: row-major values, one row per label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// `U`, `RF`, `S`, `CPRESS`, `CSHEAR`, `CDPRESS`, `CDSHEAR`, `COPEN`, `CSLIP`, `CSTATUS`.
+    /// `U`, `UR`, `RF`, `RM`, `S`, `CPRESS`, `CSHEAR`, `CDPRESS`, `CDSHEAR`, `COPEN`, `CSLIP`, `CSTATUS`.
     pub name: String,
     /// Node label of each row.
     pub labels: Vec<u32>,

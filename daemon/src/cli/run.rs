@@ -199,7 +199,7 @@ impl Job {
             reason: ended.reason.clone(),
             time_reached: simulation.time(),
             size: ModelSize {
-                nodes: mesh.nodes.len(),
+                nodes: mesh.node_count(),
                 elements: mesh.elements.len(),
                 contact_points: self.prepared.contact_points().len(),
             },

@@ -97,18 +97,19 @@ impl Frames {
     ) -> io::Result<()> {
         let mesh = &prepared.model().mesh;
         let surface = SurfaceFields::new(prepared, contact);
+        let count = mesh.node_count();
         let displacement = &fields.solution.displacement;
         let reaction = &fields.solution.reaction;
         let arrays = [
-            Array::real("U", &["U1", "U2", "U3"], displacement.iter().flatten().copied()),
-            Array::real("RF", &["RF1", "RF2", "RF3"], reaction.iter().flatten().copied()),
+            Array::real("U", &["U1", "U2", "U3"], displacement.iter().take(count).flatten().copied()),
+            Array::real("RF", &["RF1", "RF2", "RF3"], reaction.iter().take(count).flatten().copied()),
             // The order of symmetric tensors in VTK.
             Array::real(
                 "S",
                 &["S11", "S22", "S33", "S12", "S23", "S13"],
-                fields.stress.iter().flat_map(|s| [s[0], s[1], s[2], s[3], s[5], s[4]]),
+                fields.stress.iter().take(count).flat_map(|s| [s[0], s[1], s[2], s[3], s[5], s[4]]),
             ),
-            Array::real("S_MISES", &[], fields.stress.iter().map(mises)),
+            Array::real("S_MISES", &[], fields.stress.iter().take(count).map(mises)),
             Array::real("CPRESS", &[], surface.pressure.into_iter()),
             Array::real("COPEN", &[], surface.clearance.into_iter()),
             Array::real("CDPRESS", &[], surface.viscous.into_iter()),
@@ -120,7 +121,7 @@ impl Frames {
         point_data.push(&self.mesh.node_labels);
         let [connectivity, offsets, types] = &self.mesh.topology;
         Grid {
-            points: mesh.nodes.len(),
+            points: count,
             cells: mesh.elements.len(),
             point_data,
             cell_data: vec![&self.mesh.element_labels, &self.mesh.materials],
@@ -145,13 +146,17 @@ impl MeshArrays {
     fn new(model: &Model) -> Self {
         let mesh = &model.mesh;
         Self {
-            coordinates: Array::real("Points", &["", "", ""], mesh.nodes.iter().flatten().copied()),
+            coordinates: Array::real(
+                "Points",
+                &["", "", ""],
+                mesh.nodes.iter().take(mesh.node_count()).flatten().copied(),
+            ),
             topology: [
                 Array::whole("connectivity", connectivity(mesh).into_iter()),
                 Array::whole("offsets", offsets(mesh).into_iter()),
                 Array::byte("types", types(mesh).into_iter()),
             ],
-            node_labels: Array::whole("node", mesh.node_labels.iter().copied()),
+            node_labels: Array::whole("node", mesh.node_labels.iter().take(mesh.node_count()).copied()),
             element_labels: Array::whole("element", mesh.element_labels.iter().copied()),
             materials: Array::whole("material", mesh.element_materials.iter().map(|m| m.0)),
         }
@@ -197,7 +202,7 @@ struct SurfaceFields {
 
 impl SurfaceFields {
     fn new(prepared: &PreparedModel, contact: &[ContactPointResult]) -> Self {
-        let nodes = prepared.model().mesh.nodes.len();
+        let nodes = prepared.model().mesh.node_count();
         let mut fields = Self {
             pressure: vec![0.0; nodes],
             clearance: vec![f64::NAN; nodes],

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::file::{OutputError, TextFile};
 use super::number::{push_number, push_numbers};
-use crate::model::{Model, SetId};
+use crate::model::{Model, NodeId, SetId};
 use crate::simulation::{IncrementReport, NodalSolution};
 
 const HEADER: &str = "step,increment,time,node,U1,U2,U3,UR1,UR2,UR3,V1,V2,V3,A1,A2,A3,RF1,RF2,RF3,RM1,RM2,RM3\n";
@@ -24,7 +24,8 @@ impl NodeTable {
         Ok(Self { file, written: Vec::new(), write: 0 })
     }
 
-    /// Rotations, velocities, accelerations and moments do not exist in a static solution of solids: empty.
+    /// Rotations and moments are those of the reference nodes of rigid bodies; velocities and accelerations do not exist in a
+    /// static solution: empty.
     pub(super) fn rows(
         &mut self,
         model: &Model,
@@ -48,20 +49,31 @@ impl NodeTable {
                 }
                 // Writing to a string does not fail.
                 let _ = write!(text, "{when},{}", model.mesh.node_labels[i]);
+                let turning = model.mesh.rotation_of(*node).map(NodeId::index);
                 push_numbers(&mut text, &solution.displacement[i]);
-                text.push_str(",,,,,,,,,");
+                push_or_blank(&mut text, turning.map(|hidden| solution.displacement[hidden]));
+                text.push_str(",,,,,,");
                 push_numbers(&mut text, &solution.reaction[i]);
-                text.push_str(",,,\n");
+                push_or_blank(&mut text, turning.map(|hidden| solution.reaction[hidden]));
+                text.push('\n');
             }
         }
         self.file.append(&text)
     }
 }
 
+/// Three numbers, or three empty fields.
+fn push_or_blank(text: &mut String, values: Option<[f64; 3]>) {
+    match values {
+        Some(values) => push_numbers(text, &values),
+        None => text.push_str(",,,"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{NodeId, NodeSet};
+    use crate::model::NodeSet;
 
     #[test]
     fn a_node_of_two_sets_gets_one_row_with_every_column() {
@@ -89,5 +101,31 @@ mod tests {
         for absent in ["UR1", "UR3", "V1", "V3", "A1", "A3", "RM1", "RM3"] {
             assert_eq!(at(absent), "", "{absent}");
         }
+    }
+
+    #[test]
+    fn a_reference_node_has_rotations_and_moments() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut model = Model::default();
+        model.mesh.nodes = vec![[0.0; 3]; 2];
+        model.mesh.node_labels = vec![10, 10];
+        (model.mesh.rotations, model.mesh.hidden_nodes) = (vec![(NodeId(0), NodeId(1))], 1);
+        model.mesh.node_sets = vec![NodeSet { name: "N".into(), nodes: vec![NodeId(0)] }];
+        let solution = NodalSolution {
+            displacement: vec![[0.0; 3], [0.0, 0.5, 0.25]],
+            reaction: vec![[0.0; 3], [-4.0, 0.0, 0.0]],
+        };
+        let mut table = NodeTable::create(directory.path(), "job").unwrap();
+        let increment = IncrementReport { step: 1, increment: 1, ..Default::default() };
+        table.rows(&model, &increment, &[SetId(0)], &solution).unwrap();
+        let text = std::fs::read_to_string(directory.path().join("job_nodes.csv")).unwrap();
+        let [header, row] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+        let (columns, fields): (Vec<&str>, Vec<&str>) = (header.split(',').collect(), row.split(',').collect());
+        assert_eq!(fields.len(), columns.len());
+        let at = |name: &str| fields[columns.iter().position(|c| *c == name).unwrap()].parse::<f64>().ok();
+        assert_eq!(
+            [at("UR1"), at("UR2"), at("UR3"), at("RM1"), at("V1")],
+            [Some(0.0), Some(0.5), Some(0.25), Some(-4.0), None]
+        );
     }
 }

@@ -87,28 +87,42 @@ impl Printed {
         let nodes = match set {
             Some(set) => &set.nodes,
             None => {
-                everything = (0..model.mesh.nodes.len() as u32).map(NodeId).collect();
+                everything = (0..model.mesh.node_count() as u32).map(NodeId).collect();
                 &everything
             }
         };
+        let turning: Vec<(NodeId, NodeId)> =
+            nodes.iter().filter_map(|&node| Some((node, model.mesh.rotation_of(node)?))).collect();
         for variable in &request.variables {
             let totals = (variable == "RF").then(|| set.and_then(|s| self.total(&s.name, history))).flatten();
             if request.totals != Totals::Only
                 && let Some(fields) = fields
             {
-                let values = match variable.as_str() {
-                    "U" => &fields.solution.displacement,
-                    "RF" => &fields.solution.reaction,
+                let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}");
+                let mut print = |name: &str, rows: &mut dyn Iterator<Item = (NodeId, NodeId)>, values: &[[f64; 3]]| {
+                    let columns = [1, 2, 3].map(|i| format!("{name}{i}"));
+                    let mut table = Table::new(&heading, Entity::Node, None, &columns.each_ref().map(String::as_str));
+                    for (node, source) in rows {
+                        table.row(model.mesh.node_labels[node.index()], None, &values[source.index()]);
+                    }
+                    table.finish(text, request.summary, false);
+                };
+                let solution = &fields.solution;
+                let (own, values, rotations) = match variable.as_str() {
+                    "U" => (Some("U"), &solution.displacement, "UR"),
+                    "RF" => (Some("RF"), &solution.reaction, "RM"),
+                    "UR" => (None, &solution.displacement, "UR"),
+                    "RM" => (None, &solution.reaction, "RM"),
                     _ => continue,
                 };
-                let columns = [1, 2, 3].map(|i| format!("{variable}{i}"));
-                let columns = columns.each_ref().map(String::as_str);
-                let heading = format!("THE FOLLOWING TABLE IS PRINTED FOR {whom}");
-                let mut table = Table::new(&heading, Entity::Node, None, &columns);
-                for node in nodes {
-                    table.row(model.mesh.node_labels[node.index()], None, &values[node.index()]);
+                if let Some(name) = own {
+                    print(name, &mut nodes.iter().map(|&node| (node, node)), values);
                 }
-                table.finish(text, request.summary, false);
+                // Displacements of a reference node have six components, and so has its reaction.
+                let named = request.variables.iter().any(|other| other == rotations);
+                if own.is_none() || (!turning.is_empty() && !named) {
+                    print(rotations, &mut turning.iter().copied(), values);
+                }
             }
             if request.totals != Totals::No
                 && let Some(total) = totals
@@ -136,7 +150,7 @@ fn title(prepared: &PreparedModel) -> String {
     text.push_str("\n                              P R O B L E M   S I Z E\n\n");
     for (what, count) in [
         ("ELEMENTS", model.mesh.elements.len()),
-        ("NODES", model.mesh.nodes.len()),
+        ("NODES", model.mesh.node_count()),
         ("CONTACT PAIRS", model.pairs.len()),
         ("CONTACT POINTS", prepared.contact_points().len()),
         ("STEPS", model.steps.len()),

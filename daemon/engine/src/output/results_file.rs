@@ -135,19 +135,23 @@ impl Open {
         let nodes = match set {
             Some(set) => &set.nodes,
             None => {
-                everything = (0..mesh.nodes.len() as u32).map(NodeId).collect();
+                everything = (0..mesh.node_count() as u32).map(NodeId).collect();
                 &everything
             }
         };
-        for variable in &request.variables {
-            let (key, values) = match variable.as_str() {
-                "U" => (101, &fields.solution.displacement),
-                "RF" => (104, &fields.solution.reaction),
-                _ => continue,
-            };
-            for node in nodes {
-                let label = mesh.node_labels[node.index()];
-                self.stream.push(&Record::new(key).whole(label).reals(&values[node.index()]));
+        let solution = &fields.solution;
+        for (key, names, values) in
+            [(101, ["U", "UR"], &solution.displacement), (104, ["RF", "RM"], &solution.reaction)]
+        {
+            if !request.variables.iter().any(|variable| names.contains(&variable.as_str())) {
+                continue;
+            }
+            for &node in nodes {
+                let record = Record::new(key).whole(mesh.node_labels[node.index()]).reals(&values[node.index()]);
+                self.stream.push(&match mesh.rotation_of(node) {
+                    Some(rotation) => record.reals(&values[rotation.index()]),
+                    None => record,
+                });
             }
         }
     }

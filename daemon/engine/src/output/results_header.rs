@@ -62,7 +62,7 @@ pub(super) fn header(stream: &mut Stream, model: &Model, labels: &Labels) {
             .word("")
             .word("")
             .whole(mesh.elements.len() as u32)
-            .whole(mesh.nodes.len() as u32)
+            .whole(mesh.node_count() as u32)
             .reals(&[typical_length(mesh)]),
     );
     for (element, (kind, nodes)) in mesh.elements.iter().enumerate() {
@@ -70,7 +70,7 @@ pub(super) fn header(stream: &mut Stream, model: &Model, labels: &Labels) {
         let nodes = nodes.iter().map(|node| mesh.node_labels[node.index()]);
         stream.push(&Record::new(1900).whole(label).word(kind.name()).wholes(nodes));
     }
-    for (coordinates, &label) in mesh.nodes.iter().zip(&mesh.node_labels) {
+    for (coordinates, &label) in mesh.nodes.iter().zip(&mesh.node_labels).take(mesh.node_count()) {
         stream.push(&Record::new(1901).whole(label).reals(coordinates));
     }
     for set in &mesh.element_sets {
@@ -83,8 +83,8 @@ pub(super) fn header(stream: &mut Stream, model: &Model, labels: &Labels) {
     }
     surfaces(stream, model, labels);
     labels.records(stream);
-    stream
-        .push(&Record::new(1902).wholes((1..=DIRECTIONS).map(|direction| if direction <= 3 { direction } else { 0 })));
+    let active = if mesh.rotations.is_empty() { 3 } else { 6 };
+    stream.push(&Record::new(1902).wholes((1..=DIRECTIONS).map(|d| if d <= active { d } else { 0 })));
     let heading: String = model.heading.lines().next().unwrap_or_default().chars().take(WORDS_MAX).collect();
     stream.push(&Record::new(1922).text(&heading, 10));
     stream.end_increment();
