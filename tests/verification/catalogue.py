@@ -62,6 +62,12 @@ CASES = [
     ),
     Case("B02", "The solver shall balance an elastic column against each law.", "roots to 40 digits", "1e-10"),
     Case(
+        "B01-rigid",
+        "The solver shall sink and tilt a rigid body on contact under forces and moments on its reference node.",
+        "closed form; moments of tributary areas",
+        "1e-10, 1e-9",
+    ),
+    Case(
         "B02-calculix",
         "The solver shall read EXPONENTIAL as p0 100^(h/c0) in the calculix dialect.",
         "bisection in the test",

@@ -49,7 +49,7 @@ def behavior(rng, kind):
         which = rng.choice(["hard", "linear", "augmented"])
         return Behavior(str(which), scale(rng, 3.0, 5.0) if which != "hard" else 0.0, rough=True)
     if kind == "damped":
-        which = str(rng.choice(["hard", "linear", "penalty"]))
+        which = str(rng.choice(["hard", "linear", "penalty", "augmented"]))
         return Behavior(which, scale(rng, 3.0, 5.0) if which != "hard" else 0.0, damping=damping(rng))
     if kind == "modified":
         return Behavior("hard")
