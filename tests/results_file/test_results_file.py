@@ -183,3 +183,83 @@ def test_damage_is_noticed(job, tmp_path):
         path.write_text(damaged)
         with pytest.raises((reader.FormError, ValueError)):
             reader.read(path)
+
+
+RIGID = """*NODE
+1, 0, 0, 0\n2, 1, 0, 0\n3, 1, 1, 0\n4, 0, 1, 0\n5, 0, 0, 1\n6, 1, 0, 1\n7, 1, 1, 1\n8, 0, 1, 1
+101, -1, -1, 1\n102, 2, -1, 1\n103, 2, 2, 1\n104, -1, 2, 1\n900, 0.5, 0.5, 2\n11, 5, 0, 0\n12, 6, 0, 0
+*ELEMENT, TYPE=C3D8, ELSET=BLOCK
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=R3D4, ELSET=PLATE
+10, 101, 102, 103, 104
+*ELEMENT, TYPE=SPRING1, ELSET=SPRINGS
+20, 11
+*ELEMENT, TYPE=GAPUNI, ELSET=GAPS
+30, 11, 12
+*SPRING, ELSET=SPRINGS
+1
+400.
+*GAP, ELSET=GAPS
+0.05, 1., 0., 0.
+*RIGID BODY, REF NODE=900, ELSET=PLATE
+*NSET, NSET=REF
+900
+*NSET, NSET=BOTTOM
+1, 2, 3, 4
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.
+*SOLID SECTION, ELSET=BLOCK, MATERIAL=M
+*SURFACE, NAME=TOP
+BLOCK, S2
+*SURFACE, NAME=PLANE
+PLATE, SNEG
+*SURFACE INTERACTION, NAME=I
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+1000.
+*CONTACT PAIR, INTERACTION=I, TYPE=NODE TO SURFACE, SMALL SLIDING
+TOP, PLANE
+*BOUNDARY
+BOTTOM, 1, 3
+REF, 1, 6
+12, 1, 3
+11, 2, 3
+*STEP
+*STATIC, DIRECT
+0.5, 1.
+*BOUNDARY
+REF, 3, 3, -0.02
+REF, 4, 4, 0.001
+*CLOAD
+11, 1, 40.
+*NODE FILE, NSET=REF
+U, RF
+*EL FILE, ELSET=GAPS
+S, E
+*CONTACT PRINT
+CSTRESS
+*END STEP
+"""
+
+
+def test_reference_nodes_have_six_components_and_contact_elements_their_opening(write_deck, tmp_path):
+    result = support.run(write_deck(RIGID), tmp_path)
+    head, blocks = reader.read(tmp_path / "deck.fil")
+    (directions,) = [record.attributes for record in head if record.key == 1902]
+    assert directions[:7] == [1, 2, 3, 4, 5, 6, 0]
+    assert len([record for record in head if record.key == 1901]) == result.summary()["size"]["nodes"] == 15
+    faces = [record.attributes[:2] for record in head if record.key == 1502]
+    assert sorted(faces) == [[1, 2], [10, 8]], "the top of the block, the negative side of the plate"
+    last = blocks[-1]
+    row = result.table("nodes")[-1]
+    for key, names in ((101, ("U", "UR")), (104, ("RF", "RM"))):
+        (record,) = [record for record in last if record.key == key]
+        columns = [f"{name}{d}" for name in names for d in "123"]
+        assert record.attributes[0] == 900
+        assert all(same(word, row[column]) for word, column in zip(record.written[1:], columns, strict=True))
+    # 400 times 0.05 is carried by the spring, the rest of 40 by the gap; the plate turns by 0.001.
+    (stress,), (strain,) = ([r for r in last if r.key == key] for key in (11, 21))
+    assert stress.reals == pytest.approx([20.0, 0.0, 0.0]) and strain.reals == [0.0, 0.0, 0.0]
+    gap = next(row for row in result.last("contact") if row["pair"] == "GAPS")
+    assert same(stress.written[0], gap["CPRESS"]) and same(strain.written[0], gap["COPEN"])
+    assert float(row["UR1"]) == 0.001 and float(row["RM1"]) > 0.0

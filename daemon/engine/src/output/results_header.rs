@@ -127,7 +127,9 @@ fn surfaces(stream: &mut Stream, model: &Model, labels: &Labels) {
             let nodes = mesh.face_nodes(face);
             let nodes: Vec<u32> = nodes.iter().map(|node| mesh.node_labels[node.index()]).collect();
             let element = mesh.element_labels[face.element.index()];
-            let head = Record::new(1502).wholes([element, u32::from(face.face) + 1, nodes.len() as u32]);
+            // 1 to 6 are S1 to S6 of solids, 7 and 8 the two sides of a facet.
+            let first = if mesh.elements.kind(face.element.index()).is_solid() { 1 } else { 7 };
+            let head = Record::new(1502).wholes([element, u32::from(face.face) + first, nodes.len() as u32]);
             stream.push(&head.wholes(nodes));
         }
     }
