@@ -13,7 +13,8 @@ FAMILIES = {
     "length": ("U", "COPEN", "CSLIP"),
     "force": ("RF", "CFN", "CFS", "CFT"),
     "pressure": ("CPRESS", "CSHEAR", "CDPRESS", "CDSHEAR"),
-    "moment": ("CMN", "CMS", "CMT", "CTRQ"),
+    "moment": ("CMN", "CMS", "CMT", "CTRQ", "RM"),
+    "rotation": ("UR",),
     "place": ("XN", "XS", "XT"),
 }
 # Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits.
@@ -73,6 +74,7 @@ def differing(dense, sparse, extent=0.0):
             scales[family(column)] = max(scales.get(family(column), 0.0), np.abs(pair[0]).max(initial=0.0))
     scales["energy"] = max(scales["energy"], scales["force"] * scales["length"])
     scales["moment"] = max(scales.get("moment", 0.0), scales["force"] * extent)
+    scales["rotation"] = max(scales.get("rotation", 0.0), scales["length"] / extent if extent else 0.0)
     scales["place"] = max(scales.get("place", 0.0), extent)
     for (name, column), (ours, yours) in numbers.items():
         difference = np.abs(ours - yours).max(initial=0.0)
