@@ -3,15 +3,16 @@
 import contextlib
 import json
 import math
+import re
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from overclosure import DecodeError
+from overclosure import DecodeError, _messages
 from overclosure._messages import MESSAGES
-from overclosure._postcard import decode, encode, layout
+from overclosure._postcard import Choice, decode, encode, layout
 
 VECTORS = Path(__file__).parents[3] / "protocol" / "vectors"
 KINDS = {str(kind.SCHEMA): kind for kind in MESSAGES}
@@ -109,3 +110,32 @@ def test_field_types_are_those_of_the_document():
         table = text.split(f"### {schema}\n", 1)[1].split("###", 1)[0]
         names = [line.split("`")[1] for line in table.splitlines() if line.startswith("| `")]
         assert names == [name for name, _ in layout(kind)], schema
+
+
+@pytest.mark.parametrize(
+    ("kind", "field", "name"),
+    [
+        (_messages.FaultMessage, "code", "FaultCode"),
+        (_messages.Health, "status", "HealthStatus"),
+        (_messages.OpenRequest, "dialect", "Dialect"),
+        (_messages.OpenRequest, "path", "SolverPath"),
+        (_messages.Port, "quantity", "Quantity"),
+        (_messages.Finding, "severity", "Severity"),
+        (_messages.StepReply, "status", "StepStatus"),
+    ],
+)
+def test_choices_are_those_of_the_document(kind, field, name):
+    """A variant that only the daemon knows would make its messages unreadable."""
+    text = (VECTORS.parent / "PROTOCOL.md").read_text("utf-8")
+    table = text.split(f"### {name}\n", 1)[1].split("###", 1)[0].split("<!--")[0]
+    wire = dict(layout(kind))[field]
+    assert isinstance(wire, Choice)
+    assert list(wire.names) == re.findall(r"^\| \d+ \| `(\w+)` \|", table, re.MULTILINE)
+
+
+def test_every_choice_of_the_document_is_held():
+    text = (VECTORS.parent / "PROTOCOL.md").read_text("utf-8")
+    enums = re.findall(r"^### (\w+)\n\n[^#]*?^\| tag \|", text, re.MULTILINE)
+    assert sorted(enums) == sorted(
+        ["FaultCode", "HealthStatus", "Dialect", "SolverPath", "Quantity", "Severity", "StepStatus"]
+    )
