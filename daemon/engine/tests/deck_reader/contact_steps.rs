@@ -247,3 +247,28 @@ fn the_summary_names_what_steps_change() {
         assert!(summary.contains(words), "{words}: {summary}");
     }
 }
+
+#[test]
+fn contact_elements_change_by_their_set() {
+    let gaps = "*ELEMENT, TYPE=GAPUNI, ELSET=STOPS\n21, 1, 15\n*GAP, ELSET=STOPS\n0.5, 0., 0., 1., 2.\n\
+        *SURFACE BEHAVIOR, AUGMENTED LAGRANGE\n7e4\n*CONTACT DAMPING\n8., 0.1\n*BOUNDARY\nBOTTOM";
+    let cards = "*CHANGE FRICTION, ELSET=STOPS\n*FRICTION, ROUGH\n*CONTACT INTERFERENCE, TYPE=ELEMENT\nstops, 0.01\n\
+        *CONTACT CONTROLS, STIFFNESS SCALE FACTOR=2.\n";
+    let model = model(&steps("\n", &[cards]).replacen("*BOUNDARY\nBOTTOM", gaps, 1));
+    let pair = model.pairs.iter().position(|pair| pair.name == "STOPS").expect("a pair of GAP elements");
+    let interaction = &model.interactions[model.pairs[pair].interaction.index()];
+    let penalty = LinearPenalty { stiffness: Some(7e4), ..LinearPenalty::default() };
+    assert_eq!(interaction.enforcement, Enforcement::AugmentedLagrange(penalty));
+    assert!(interaction.damping.is_some());
+    assert_eq!(model.interactions[0].damping, None);
+    let contact = &model.steps[0].contact;
+    let mut frictions = [Friction::None; 2];
+    frictions[pair] = Friction::Rough;
+    assert_eq!(contact.frictions, frictions);
+    let allowed = contact.interference_of(pair).map(|interference| interference.allowed);
+    assert_eq!(allowed, Some(AllowedOverclosure::Uniform(0.01)));
+    assert_eq!(contact.controls_of(pair).stiffness_scale, 2.0);
+    let softened = gaps.replace("AUGMENTED LAGRANGE\n7e4", "NO SEPARATION, PRESSURE-OVERCLOSURE=LINEAR\n1.");
+    let text = steps("\n", &[""]).replacen("*BOUNDARY\nBOTTOM", &softened, 1);
+    refuses(&text, "*SURFACE BEHAVIOR", "the linear law cannot be combined with NO SEPARATION");
+}
