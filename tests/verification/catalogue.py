@@ -137,6 +137,12 @@ CASES = [
         "1e-12",
     ),
     Case(
+        "automatic",
+        "The solver shall take automatic penalties from the depth and the confined modulus of the elements on both sides.",
+        "closed form",
+        "1e-10",
+    ),
+    Case(
         "A14-deck",
         "The solver shall damp contact by the coefficient at the clearance of the end of an increment.",
         "closed form at 8 clearances of three curves",

@@ -3,6 +3,7 @@
 import pytest
 
 import support
+from verification.columns import Block, output_of, stack
 from verification.points import Point, controls, deck, driver, node, rows, step
 
 FACE = 2.0
@@ -91,3 +92,43 @@ def test_a_linear_penalty_is_a_spring(write_deck, tmp_path, keyword, stiffness, 
     assert point.overclosure == pytest.approx(overclosure, rel=1e-12)
     assert point.pressure == pytest.approx(own / area * (overclosure + clearance), rel=1e-12)
     assert result.summary()["steps"][0]["augmentations"] == 0
+
+
+# Factor on the stiffness of the underlying elements; initial one of the nonlinear penalty is a hundredth of its last.
+AUTOMATIC = {
+    "AUGMENTED LAGRANGE": 1000.0,
+    "PENALTY": 10.0,
+    "PENALTY=LINEAR": 10.0,
+    "PENALTY=NONLINEAR": 1.0,
+}
+
+
+@pytest.mark.parametrize("enforcement", AUTOMATIC)
+@pytest.mark.parametrize(("layers", "poisson"), [((1, 1), (0.0, 0.0)), ((3, 2), (0.3, 0.1))])
+def test_an_automatic_penalty_follows_the_elements_underneath(write_deck, tmp_path, enforcement, layers, poisson):
+    """`k = factor / (L / M + L' / M')` with the depths and confined moduli of the elements on both sides, under a dead pressure."""
+    moduli = (700.0, 1900.0)
+    blocks = {
+        "TOP": Block((0.0, 0.0, 0.0), (1.0, 2.0, 1.2), (2, 2, layers[0]), moduli[0]),
+        "BOTTOM": Block((-0.5, -0.5, -0.8), (1.5, 2.5, 0.0), (1, 1, layers[1]), moduli[1]),
+    }
+    pressure, pair = 0.01, "*CONTACT CONTROLS, MASTER=BOTTOM_UP, SLAVE=TOP_DOWN"
+    lines = ["*BOUNDARY", "BOTTOM_ALL, 1, 3", "TOP_ALL, 1, 2", "*STEP", "*STATIC, DIRECT", "1., 1."]
+    lines += [
+        f"{pair}, ABSOLUTE PENETRATION TOLERANCE=1., STIFFNESS SCALE FACTOR=0.5",
+        "*DSLOAD",
+        f"TOP_UP, P, {pressure!r}",
+    ]
+    text = stack(blocks, [f"*SURFACE BEHAVIOR, {enforcement}"], [*lines, *output_of("TOP_ALL")])
+    for modulus, nu in zip(moduli, poisson, strict=True):
+        assert text.count(f"{modulus!r}, 0.\n") == 1
+        text = text.replace(f"{modulus!r}, 0.\n", f"{modulus!r}, {nu!r}\n")
+    confined = [e * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) for e, nu in zip(moduli, poisson, strict=True)]
+    depths = [1.2 / layers[0], 0.8 / layers[1]]
+    stiffness = 0.5 * AUTOMATIC[enforcement] / sum(d / m for d, m in zip(depths, confined, strict=True))
+    result = support.run(write_deck(text), tmp_path)
+    points = rows(result)[-1]
+    assert len(points) == 9
+    for point in points:
+        assert point.pressure == pytest.approx(pressure, rel=1e-11)
+        assert point.overclosure == pytest.approx(pressure / stiffness, rel=1e-10)
