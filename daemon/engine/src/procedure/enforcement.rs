@@ -24,8 +24,8 @@ const OVERCLOSURE_ROUNDING: f64 = 1e-12;
 const FORCE_ROUNDING: f64 = 1e-11;
 /// Clearance, relative to the interface, at which surfaces touch at the start of an increment.
 const TOUCHING: f64 = 1e-9;
-/// Change of a tangential damping coefficient that matters.
-const COEFFICIENT_ROUNDING: f64 = 1e-12;
+/// Change of a tangential damping coefficient, relative to the normal one of closed points, that matters.
+const COEFFICIENT_ROUNDING: f64 = 1e-10;
 
 /// Work of an increment.
 #[derive(Clone, Copy, Debug, Default)]
@@ -270,9 +270,10 @@ impl Simulation {
             let start = self.derived.overclosures[k];
             let dashpot = moment.tangential_dashpot(point, self.work.overclosures[point], start, size);
             let coefficient = |d: Option<crate::solve::contact::Dashpot>| d.map_or(0.0, |d| d.coefficient());
+            let largest = coefficient(self.work.rows[point].dashpot);
             let row = &mut self.work.rows[k];
             let (old, new) = (coefficient(row.dashpot), coefficient(dashpot));
-            if (old - new).abs() > COEFFICIENT_ROUNDING * old.max(new) {
+            if (old - new).abs() > COEFFICIENT_ROUNDING * largest {
                 row.dashpot = dashpot;
                 changed = true;
             }
@@ -295,8 +296,8 @@ impl Simulation {
             let Some((tolerance, clearance)) = moment.penetration_max(i) else { return false };
             let h = self.work.penetrations[i];
             // A multiplier that is too large holds a point off.
-            let held_off = -(h + clearance) > tolerance && self.work.forces[i] != 0.0;
-            h > tolerance || held_off
+            let presses = || self.work.rows[i].law(&self.prepared.contact.behaviors, h).pressure != 0.0;
+            h > tolerance || -(h + clearance) > tolerance && presses()
         });
         if !too_deep {
             return Augmented::Enough;

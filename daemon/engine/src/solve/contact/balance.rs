@@ -164,7 +164,6 @@ impl ContactSolver {
             }
             let slow = worst > SLOW * last;
             let hold = self.newton_step(system, &view, &held.springs, steps);
-            steps.is_held = hold == Hold::Full;
             let stiffened = self.adjust_springs(system, unknowns.springs, slow && hold != Hold::Full);
             for m in 0..k {
                 steps.safe[m] = unknowns.motions[m] + steps.residual[m] / held.springs[m];
@@ -183,7 +182,7 @@ impl ContactSolver {
                 system.relief(unknowns.forces, unknowns.relief);
                 system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
                 if polished || self.laws_hold(system, problem, unknowns) {
-                    if hold == Hold::Full {
+                    if steps.is_held {
                         self.refine(system, problem, &view, &held.springs, steps, unknowns);
                     }
                     return Ok(counts);
@@ -219,6 +218,7 @@ impl ContactSolver {
     /// their springs give: only partly held. Not at all where nothing is closed: there is no step then.
     fn newton_step(&mut self, system: &ContactSystem, view: &View<'_>, springs: &[f64], steps: &mut Steps) -> Hold {
         let k = springs.len();
+        steps.is_held = false;
         steps.stiffness.rows = k;
         steps.stiffness.columns = k;
         steps.stiffness.values.clear();
@@ -247,6 +247,7 @@ impl ContactSolver {
         steps.newton.extend(steps.residual.iter().zip(springs).map(|(r, spring)| r / spring.sqrt()));
         linear::cholesky_solve(&steps.factor, k, &mut steps.newton);
         steps.newton.iter_mut().zip(springs).for_each(|(step, spring)| *step /= spring.sqrt());
+        steps.is_held = true;
         Hold::Full
     }
 

@@ -185,6 +185,16 @@ impl ContactSolver {
             self.iterates.push(overclosures.to_vec());
             if fraction == 1.0 && self.is_balanced(view, free, forces, overclosures) {
                 counts.factorizations = self.sparse.factorizations - factorizations;
+                // The last step was taken whole: `relief` is `W F` as `relief` of the view computes it, unless points join that were
+                // left out because their force moves nothing: it is that of their curve all the same.
+                let left_out = |i: usize| view.rows[i].has_curve() && !self.is_active[i];
+                let force = |i: usize| view.rows[i].evaluate(view.behaviors, overclosures[i]).force;
+                if (0..n).any(|i| left_out(i) && force(i) != 0.0) {
+                    for i in (0..n).filter(|&i| left_out(i)) {
+                        forces[i] = force(i);
+                    }
+                    view.relief(forces, relief);
+                }
                 // At the kink of a law rounding would choose the status: a force that is rounding closes nothing.
                 let negligible = STATUS_ROUNDING * forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
                 for (i, row) in view.rows.iter().enumerate() {
@@ -199,7 +209,6 @@ impl ContactSolver {
                         }
                     };
                 }
-                // The last step was taken whole: `relief` is `W F` as `relief` of the view computes it.
                 return Ok(counts);
             }
         }
@@ -358,11 +367,15 @@ impl ContactSolver {
         }
     }
 
-    /// `h − onset − C F` at the rows of the factor: what the linearised laws miss.
-    pub(super) fn law_gaps(&self, overclosures: &[f64], forces: &[f64], out: &mut [f64]) {
+    /// What the laws miss at the rows of the factor, as overclosures: `h − position` on a wall, `C (F(h) − F)` on a curve.
+    pub(super) fn law_gaps(&self, view: &View<'_>, overclosures: &[f64], forces: &[f64], out: &mut [f64]) {
         for &i in &self.factor_rows {
             let i = i as usize;
-            out[i] = overclosures[i] - self.onset[i] - self.compliance[i] * forces[i];
+            let row = &view.rows[i];
+            out[i] = match self.on_wall[i] {
+                true => overclosures[i] - row.position,
+                false => self.compliance[i] * (row.evaluate(view.behaviors, overclosures[i]).force - forces[i]),
+            };
         }
     }
 

@@ -3,7 +3,7 @@
 //! With the closed points as they are, forces and motions solve
 //!
 //! ```text
-//! (W + C) dF − D dα = g = h − onset − C F          Dᵀ dF = r = Rᵀ f − Dᵀ F
+//! (W + C) dF − D dα = g = C (F(h) − F), h − position on walls          Dᵀ dF = r = Rᵀ f − Dᵀ F
 //! ```
 //!
 //! The factor at hand is that of `M = W + C + D ε⁻¹ Dᵀ`. With `x = dα + ε⁻¹ r` the equations are `M dF = g + D x` and
@@ -17,7 +17,7 @@ use super::{ContactSolver, ContactSystem, Problem, Unknowns};
 use crate::solve::linear;
 
 /// Corrections; each gains what the factor has in digits.
-const STEPS: u32 = 2;
+const STEPS: u32 = 3;
 /// Correction of the forces, relative to the largest, above which the factor is not that of this balance.
 const CORRECTION_MAX: f64 = 1e-6;
 
@@ -92,7 +92,7 @@ impl ContactSolver {
         for _ in 0..STEPS {
             steps.gaps.clear();
             steps.gaps.resize(n, 0.0);
-            self.law_gaps(unknowns.overclosures, unknowns.forces, &mut steps.gaps);
+            self.law_gaps(view, unknowns.overclosures, unknowns.forces, &mut steps.gaps);
             steps.residual.clear();
             for m in 0..k {
                 let carried: f64 = system.gap_motions.column(m).iter().zip(&*unknowns.forces).map(|(d, f)| d * f).sum();
