@@ -45,6 +45,9 @@ pub fn fingerprint(model: &Model) -> u64 {
     }
     let mut text = |part: std::fmt::Arguments<'_>| hash.write_fmt(part).expect("hashing never fails");
     text(format_args!("{:?}{:?}{:?}", mesh.node_sets, mesh.element_sets, mesh.surfaces));
+    if !mesh.rotations.is_empty() {
+        text(format_args!("{:?}{:?}", mesh.rotations, mesh.analytical));
+    }
     let mut connectors: Vec<_> = mesh.connectors.iter().collect();
     connectors.sort_by_key(|(element, _)| **element);
     text(format_args!("{connectors:?}"));

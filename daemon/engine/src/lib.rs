@@ -35,6 +35,8 @@ mod solve;
 #[cfg(test)]
 mod adjust_tests;
 #[cfg(test)]
+mod analytical_tests;
+#[cfg(test)]
 mod column_tests;
 #[cfg(test)]
 mod load_pattern_tests;

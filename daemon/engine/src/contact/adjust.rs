@@ -3,9 +3,10 @@
 //! As in Abaqus and CalculiX the coordinates change, along the normal of the primary, so the moved nodes carry neither strain nor
 //! stress. A node in a corner is moved against each surface within the distance, by turns.
 
-use super::points::secondary_nodes;
-use super::search::{Anchor, PrimarySurface, Query};
-use crate::model::{AdjustRegion, Mesh, NodeId, SurfaceKind, SurfacePair};
+use super::primary::Primary;
+use super::search::{Anchor, Query};
+use super::secondary;
+use crate::model::{AdjustRegion, Mesh, NodeId, SurfaceId, SurfacePair};
 
 /// Turns of a node in a corner: at right angles two are enough, at 30 degrees each leaves three quarters of the rest.
 const TURNS_MAX: usize = 100;
@@ -22,13 +23,12 @@ pub fn applies(mesh: &Mesh, region: AdjustRegion, node: NodeId, anchor: &Anchor,
 
 /// Moves the nodes of a pair; returns those that moved, ascending, with the distance [length].
 pub fn adjust(mesh: &mut Mesh, pair: &SurfacePair, region: AdjustRegion) -> Vec<(NodeId, f64)> {
-    let SurfaceKind::Faces(faces) = &mesh.surfaces[pair.primary.index()].kind else {
-        unreachable!("the deck reader admits element-based primary surfaces only")
-    };
-    let primary = PrimarySurface::new(mesh, faces);
+    let surface = |surface: SurfaceId| mesh.surfaces[surface.index()].kind.clone();
+    let (first, second, analytical) = (surface(pair.secondary), surface(pair.primary), mesh.analytical.clone());
+    let primary = Primary::new(mesh, &second, &analytical);
     let mut moved = Vec::new();
     // Areas are not needed.
-    for (node, _, vector) in secondary_nodes(mesh, &mesh.surfaces[pair.secondary.index()].kind, 1.0) {
+    for (node, _, vector) in secondary::nodes(mesh, &first, 1.0) {
         let query = Query { node, outward: vector.map(super::points::direction), extension_zone: pair.extension_zone };
         let start = mesh.nodes[node.index()];
         for _ in 0..TURNS_MAX {
@@ -37,7 +37,7 @@ pub fn adjust(mesh: &mut Mesh, pair: &SurfacePair, region: AdjustRegion) -> Vec<
             let Some((_, farthest)) = wanted.max_by(|a, b| a.1.clearance.abs().total_cmp(&b.1.clearance.abs())) else {
                 break;
             };
-            if farthest.clearance.abs() <= ON_SURFACE * primary.size(farthest.face) {
+            if farthest.clearance.abs() <= ON_SURFACE * primary.size(farthest) {
                 break;
             }
             for (x, n) in mesh.nodes[node.index()].iter_mut().zip(farthest.normal) {

@@ -74,6 +74,7 @@ pub fn points(underlying: &Underlying<'_>, pair: u32, gaps: &[GapElement]) -> Ve
             tangents: tangents(normal),
             primary: FaceNodes::single(primary),
             weights,
+            lever: None,
             clearance,
             face_size: reach,
             length: mean,

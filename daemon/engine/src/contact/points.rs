@@ -2,18 +2,13 @@
 //!
 //! Small sliding: anchor, normal and tangents are those of the undeformed bodies. How anchors are found: `search.rs`.
 
-use rustc_hash::FxHashMap;
-
-use super::search::{PrimarySurface, Query};
-use super::underlying::{self, Underlying};
-use super::{adjust, gap_points, node_areas};
+use super::primary::{Hold, Lever, Primary};
+use super::search::Query;
+use super::underlying::Underlying;
+use super::{adjust, gap_points, secondary};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
-use crate::element::{Coordinates, face};
-use crate::model::{
-    Dialect, ElementFace, FACE_NODES_MAX, FaceNodes, InteractionId, Mesh, Model, NodeId, PairMembers, SurfaceId,
-    SurfaceKind, SurfacePair,
-};
+use crate::model::{FACE_NODES_MAX, FaceNodes, Model, NodeId, PairMembers};
 
 /// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
 const OVERLAP_MAX: f64 = 0.5;
@@ -38,9 +33,12 @@ pub struct ContactPoint {
     pub primary: FaceNodes,
     /// Shape functions of the face at the anchor; they add up to 1. Zero beyond the nodes of the face.
     pub weights: [f64; FACE_NODES_MAX],
+    /// Lever about the reference node of an analytical surface, which is then the only primary node.
+    pub lever: Option<Lever>,
     /// Initial clearance along the normal [length]; negative when the bodies overlap.
     pub clearance: f64,
-    /// Size of the primary face: square root of its area [length]. Of a gap the distance over which its direction holds.
+    /// Size of the primary face: square root of its area [length]. Of a gap or an analytical surface the length over which its
+    /// direction holds.
     pub face_size: f64,
     /// Characteristic length of the interface \[length\]: tolerances and automatic stiffnesses are parts of it.
     pub length: f64,
@@ -61,30 +59,12 @@ impl ContactPoint {
                 }
             }
         }
-    }
-}
-
-/// Secondary nodes of a surface with area and outward normal (none for a node-based surface), by node.
-pub(super) fn secondary_nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<Secondary> {
-    match kind {
-        SurfaceKind::Nodes(nodes) => nodes.iter().map(|&n| (n, node_area, None)).collect(),
-        SurfaceKind::Faces(faces) => {
-            let mut sums: FxHashMap<NodeId, (f64, [f64; 3])> = FxHashMap::default();
-            for &element_face in faces {
-                let nodes = mesh.face_nodes(element_face);
-                let coordinates = Coordinates::of(nodes.iter().map(|n| mesh.nodes[n.index()]));
-                let (areas, vectors) = (face::nodal_areas(&coordinates), face::nodal_area_vectors(&coordinates));
-                for ((&node, area), vector) in nodes.iter().zip(areas).zip(vectors) {
-                    let entry = sums.entry(node).or_default();
-                    entry.0 += area;
-                    for (sum, v) in entry.1.iter_mut().zip(vector) {
-                        *sum += v;
-                    }
-                }
+        // u_primary = u_reference + θ × r, so that v · (θ × r) = θ · (r × v). All three, so that the nodes of a row do not depend
+        // on v.
+        if let Some(Lever { rotation, arm }) = self.lever {
+            for (direction, component) in cross(arm, v).into_iter().enumerate() {
+                entry(rotation, direction, -component);
             }
-            let mut all: Vec<_> = sums.into_iter().map(|(n, (area, vector))| (n, area, Some(vector))).collect();
-            all.sort_by_key(|&(n, ..)| n);
-            all
         }
     }
 }
@@ -106,75 +86,6 @@ pub(super) fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
     [first, cross(normal, first)]
 }
 
-/// A secondary node, its area, and its area vector where it belongs to faces.
-type Secondary = (NodeId, f64, Option<[f64; 3]>);
-
-/// Secondary nodes of a pair with their areas as the dialect has them, and the labels of those whose area it leaves open.
-fn secondaries_of(model: &Model, interaction: InteractionId, pair: &SurfacePair) -> (Vec<Secondary>, Vec<u32>) {
-    let mesh = &model.mesh;
-    let kind = &mesh.surfaces[pair.secondary.index()].kind;
-    let given = model.interactions[interaction.index()].node_area;
-    let mut secondaries = secondary_nodes(mesh, kind, given.unwrap_or(1.0));
-    let mut unknown = Vec::new();
-    if let (SurfaceKind::Nodes(nodes), None, Dialect::Calculix) = (kind, given, model.dialect) {
-        for ((node, area, _), share) in secondaries.iter_mut().zip(node_areas::of_outer_faces(mesh, nodes)) {
-            match share {
-                Some(share) => *area = share,
-                None => unknown.push(mesh.node_labels[node.index()]),
-            }
-        }
-    }
-    (secondaries, unknown)
-}
-
-/// Stiffness under both sides of a pair.
-struct Stiffness<'a> {
-    underlying: &'a Underlying<'a>,
-    /// Under the nodes of an element-based secondary surface; none for nodes.
-    secondary: Option<FxHashMap<NodeId, f64>>,
-    primary: &'a [ElementFace],
-}
-
-impl<'a> Stiffness<'a> {
-    fn new(underlying: &'a Underlying<'a>, pair: &SurfacePair, primary: &'a [ElementFace]) -> Self {
-        let secondary = match &underlying.model.mesh.surfaces[pair.secondary.index()].kind {
-            SurfaceKind::Faces(faces) => Some(underlying.of_faces(faces)),
-            SurfaceKind::Nodes(_) => None,
-        };
-        Self { underlying, secondary, primary }
-    }
-
-    /// At a point with a normal towards the secondary side, an area, and a position in the primary surface [pressure/length].
-    fn at(&self, node: NodeId, normal: [f64; 3], area: f64, face: u32) -> Option<f64> {
-        let face = self.primary[face as usize];
-        let (solids, primary) = match &self.secondary {
-            Some(nodes) => (nodes.get(&node).copied(), self.underlying.of_face(face)),
-            None => {
-                let share = |force: Option<f64>| force.map(|k| k / area);
-                let solids = self.underlying.of_node(node, normal.map(|x| -x));
-                (share(solids), share(self.underlying.force_of_face(face)))
-            }
-        };
-        let connectors = self.underlying.of_connectors(node, normal).map(|k| k / area);
-        let secondary = match (solids, connectors) {
-            (Some(a), Some(b)) => Some(a + b),
-            (only, None) | (None, only) => only,
-        };
-        underlying::in_series(secondary, primary)
-    }
-}
-
-/// Characteristic length of an interface: the mean size of the faces of the secondary surface, of a node-based one those of the
-/// primary surface [length].
-fn characteristic_length(model: &Model, pair: &SurfacePair) -> f64 {
-    let kind = |surface: SurfaceId| &model.mesh.surfaces[surface.index()].kind;
-    let ((SurfaceKind::Faces(faces), _) | (_, SurfaceKind::Faces(faces))) = (kind(pair.secondary), kind(pair.primary))
-    else {
-        unreachable!("the deck reader admits element-based primary surfaces only")
-    };
-    faces.iter().map(|&face| underlying::face_area(model, face).sqrt()).sum::<f64>() / faces.len() as f64
-}
-
 /// Contact points of all pairs, pair by pair, by node; and warnings about secondary nodes that found no partner or start deep
 /// inside one.
 ///
@@ -192,13 +103,11 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                 continue;
             }
         };
-        let SurfaceKind::Faces(faces) = &mesh.surfaces[surfaces.primary.index()].kind else {
-            unreachable!("the deck reader admits element-based primary surfaces only")
-        };
-        let primary = PrimarySurface::new(mesh, faces);
-        let stiffness = Stiffness::new(&underlying, surfaces, faces);
-        let length = characteristic_length(model, surfaces);
-        let (secondaries, unknown) = secondaries_of(model, pair.interaction, surfaces);
+        let kind = &mesh.surfaces[surfaces.primary.index()].kind;
+        let primary = Primary::new(mesh, kind, &mesh.analytical);
+        let stiffness = secondary::Stiffness::new(&underlying, surfaces.secondary);
+        let length = secondary::characteristic_length(model, surfaces);
+        let (secondaries, unknown) = secondary::of_pair(model, pair.interaction, surfaces);
         let total = secondaries.len();
         let (mut lost, mut deep) = (Vec::new(), Vec::new());
         for (node, area, vector) in secondaries {
@@ -209,28 +118,36 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                 lost.push(label);
             }
             let several = anchors.len() > 1;
+            let given = surfaces.clearances.binary_search_by_key(&node, |&(node, _)| node);
             for (i, anchor) in anchors.into_iter().enumerate() {
-                let face_size = primary.size(anchor.face);
                 // ADJUST has moved the node; what is left is rounding, or a primary surface that moved behind it.
                 let adjusted = surfaces.adjust.is_some_and(|a| adjust::applies(mesh, a.region, node, &anchor, i == 0));
-                let clearance = if adjusted { 0.0 } else { anchor.clearance };
-                if clearance < -OVERLAP_MAX * face_size {
+                let clearance = match given {
+                    Ok(at) => surfaces.clearances[at].1,
+                    Err(_) if adjusted => 0.0,
+                    Err(_) => anchor.clearance,
+                };
+                let face_size = primary.reach(&anchor, length);
+                let critical = if face_size.is_finite() { face_size } else { length };
+                if clearance < -surfaces.hcrit.unwrap_or(OVERLAP_MAX * critical) {
                     deep.push(label);
                 }
                 let shown = vector.filter(|_| several).map(|v| dot(v, anchor.normal).abs());
                 let area = shown.unwrap_or(area);
+                let Hold { nodes, weights, lever } = primary.hold(mesh, &model.rigid_bodies, &anchor);
                 points.push(ContactPoint {
                     pair: index,
                     node,
                     area,
                     normal: anchor.normal,
                     tangents: tangents(anchor.normal),
-                    primary: primary.face_nodes(anchor.face),
-                    weights: primary.weights(&anchor),
+                    primary: nodes,
+                    weights,
+                    lever,
                     clearance,
                     face_size,
                     length,
-                    underlying: stiffness.at(node, anchor.normal, area, anchor.face),
+                    underlying: stiffness.with(node, anchor.normal, area, primary.stiffness(&underlying, &anchor)),
                 });
             }
         }
@@ -259,7 +176,10 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         );
         warn(
             &deep,
-            "start more than half a face inside the primary surface",
+            match surfaces.hcrit {
+                Some(_) => "start more than HCRIT inside the primary surface",
+                None => "start more than half a face inside the primary surface",
+            },
             "check the geometry and the sides of the surfaces: contact will push these nodes out",
         );
     }

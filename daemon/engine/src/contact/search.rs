@@ -18,17 +18,17 @@ use crate::model::{ElementFace, FaceNodes, Mesh, NodeId};
 
 /// The secondary side looks at an anchor when their outward directions are more than about 93 degrees apart. At 90 degrees a side
 /// wall would look at the floor it stands on, or not, as rounding decides.
-const FACING_COSINE: f64 = -0.05;
+pub(super) const FACING_COSINE: f64 = -0.05;
 /// Further anchors differ in direction from each nearer one by more than 30 degrees: the facets of a curved surface do not.
-const DIRECTION_COSINE: f64 = 0.866;
+pub(super) const DIRECTION_COSINE: f64 = 0.866;
 /// Further anchors are looked for within this many face sizes beyond the nearest: sliding is small.
 const REACH: f64 = 2.0;
 /// Natural coordinates this close to the end of their range are on the edge.
 const ON_EDGE: f64 = 1e-9;
 /// Distances that differ by less than this part of a face are equal.
-const HAIR: f64 = 1e-9;
+pub(super) const HAIR: f64 = 1e-9;
 /// Below this part of a face the line from the anchor to the position has no direction of its own.
-const TOUCHING: f64 = 1e-6;
+pub(super) const TOUCHING: f64 = 1e-6;
 
 /// Where and in which direction a constraint takes hold.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +37,14 @@ pub struct Anchor {
     pub face: u32,
     /// Natural coordinates on it.
     pub natural: [f64; 2],
+    /// Where it is [length].
+    pub foot: [f64; 3],
     /// Unit normal of the primary, towards the secondary side.
     pub normal: [f64; 3],
     /// Clearance along the normal [length]; negative when the bodies overlap.
     pub clearance: f64,
     /// Distance of the position [length].
-    distance: f64,
+    pub(super) distance: f64,
 }
 
 /// What the search asks for at one secondary node.
@@ -179,6 +181,7 @@ impl PrimarySurface {
         Some(Anchor {
             face: index,
             natural: projection.natural,
+            foot: projection.foot,
             normal,
             clearance: dot(line, normal),
             distance: projection.distance,

@@ -178,8 +178,11 @@ fn lone_nodes(model: &Model) -> impl Iterator<Item = NodeId> + '_ {
         match &pair.members {
             PairMembers::Gaps(gaps) => nodes.extend(gaps.iter().flat_map(|gap| gap.nodes)),
             PairMembers::Surfaces(surfaces) => {
-                if let SurfaceKind::Nodes(all) = &model.mesh.surfaces[surfaces.secondary.index()].kind {
-                    nodes.extend(all);
+                let mesh = &model.mesh;
+                match &mesh.surfaces[surfaces.secondary.index()].kind {
+                    SurfaceKind::Nodes(all) => nodes.extend(all),
+                    SurfaceKind::Bars(bars) => nodes.extend(bars.iter().flat_map(|e| mesh.elements.nodes(e.index()))),
+                    SurfaceKind::Faces(_) | SurfaceKind::Analytical(_) => {}
                 }
             }
         }

@@ -19,6 +19,7 @@ pub const BODIES: &[Keyword] = &[
             P::value("TIE NSET"),
             P::value("PIN NSET"),
             P::value("ROT NODE"),
+            P::value("ANALYTICAL SURFACE"),
             P::one_of(
                 "POSITION",
                 &[
@@ -27,7 +28,6 @@ pub const BODIES: &[Keyword] = &[
                 ],
             ),
             P::silent("ISOTHERMAL"),
-            P::refused("ANALYTICAL SURFACE", "mesh the rigid surface with R3D4 and R3D3 elements"),
             P::refused("DENSITY", "give the weight to elements of the body by their material, or to MASS elements"),
             P::refused("NODAL THICKNESS", "facets have no thickness"),
             P::refused("OFFSET", "move the nodes of the facets"),

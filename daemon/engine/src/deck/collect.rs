@@ -230,6 +230,9 @@ impl Collector<'_> {
                 Sink::Members(Members::default(), generate)
             }
             DataLines::Faces if parameters.word("TYPE") == "NODE" => Sink::NodeFaces(Members::default()),
+            DataLines::Faces if matches!(parameters.word("TYPE").as_str(), "CYLINDER" | "REVOLUTION") => {
+                Sink::Lines(Lines::default())
+            }
             DataLines::Faces => Sink::Faces(Faces::default()),
         };
         self.deck.cards.push(Card { keyword, at, parameters, body, faulty });

@@ -168,6 +168,8 @@ fn describe_surface(model: &Model, surface: SurfaceId) -> String {
     let mesh = &model.mesh;
     match &mesh.surfaces[surface.index()].kind {
         SurfaceKind::Nodes(nodes) => format!("{} nodes", nodes.len()),
+        SurfaceKind::Bars(bars) => format!("{} bars", bars.len()),
+        SurfaceKind::Analytical(_) => "an analytical surface".to_string(),
         SurfaceKind::Faces(faces) => {
             let mut nodes: Vec<_> = faces.iter().flat_map(|&face| mesh.face_nodes(face).to_vec()).collect();
             nodes.sort_unstable();

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{Connector, Elements, FaceNodes};
+use super::{AnalyticalSurface, Connector, Elements, FaceNodes};
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -78,6 +78,8 @@ pub struct Mesh {
     pub element_sets: Vec<ElementSet>,
     /// Surfaces, in order of definition.
     pub surfaces: Vec<Surface>,
+    /// Analytical surfaces, by [`SurfaceKind::Analytical`].
+    pub analytical: Vec<AnalyticalSurface>,
     /// Reference nodes of rigid bodies, each with the node whose three displacements are its rotations [rad]; by reference node.
     pub rotations: Vec<(NodeId, NodeId)>,
     /// How many of the last nodes are not the analyst's: they only carry the rotations of reference nodes, whose numbers they have.
@@ -150,4 +152,8 @@ pub enum SurfaceKind {
     Faces(Vec<ElementFace>),
     /// `TYPE=NODE`: nodes, ascending, no repetition.
     Nodes(Vec<NodeId>),
+    /// `TYPE=ELEMENT` on bars, secondary only: their nodes carry a force per length. Ascending, no repetition.
+    Bars(Vec<ElementId>),
+    /// Analytical rigid surface, primary only: position in [`Mesh::analytical`].
+    Analytical(u32),
 }

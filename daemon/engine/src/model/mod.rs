@@ -3,11 +3,13 @@
 //! Indices (`NodeId`, `ElementId`, …) count from zero in the order of definition; `label` fields hold the
 //! numbers that the analyst wrote. Units are consistent units.
 
+mod analytical;
 mod contact;
 mod element;
 mod history;
 mod mesh;
 
+pub use analytical::*;
 pub use contact::*;
 pub use element::*;
 pub use history::*;

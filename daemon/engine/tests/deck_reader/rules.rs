@@ -100,7 +100,7 @@ fn surfaces_are_faces_free_faces_or_nodes() {
         let model = model(text);
         match &model.mesh.surfaces[0].kind {
             SurfaceKind::Faces(faces) => faces.iter().map(|face| (face.element.0, face.face + 1)).collect::<Vec<_>>(),
-            SurfaceKind::Nodes(_) => Vec::new(),
+            _ => Vec::new(),
         }
     };
     assert_eq!(faces(&with("UPPER, S1", "2, s1\nUPPER, S1")), [(1, 1)]);
@@ -129,7 +129,7 @@ fn surfaces_are_faces_free_faces_or_nodes() {
     refuses(&with("UPPER, S1\n", ""), "*SURFACE", "surface SECOND is empty");
     refuses(&with("NAME=FIRST", "NAME=SECOND"), "*SURFACE", "defined twice");
     refuses(&with("NAME=SECOND\nUPPER, S1", "NAME=SECOND, TYPE=NODE\n11, 0.5"), "*SURFACE", "area per node");
-    refuses(&with("NAME=SECOND", "NAME=SECOND, TYPE=CYLINDER"), "*SURFACE", "TYPE=CYLINDER is not supported");
+    refuses(&with("NAME=SECOND", "NAME=SECOND, TYPE=SEGMENTS"), "*SURFACE", "TYPE=SEGMENTS is not supported");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Second pass: cards to a model. References are followed in any direction, so the order of definitions does not matter.
 
 mod adjust;
+mod analytical;
 mod behavior;
 mod budget;
 mod clearance;
@@ -214,10 +215,11 @@ impl Builder<'_> {
         let of_elements = mesh.elements.iter().flat_map(|(_, nodes)| nodes);
         let of_surfaces = mesh.surfaces.iter().flat_map(|surface| match &surface.kind {
             SurfaceKind::Nodes(nodes) => nodes.as_slice(),
-            SurfaceKind::Faces(_) => &[],
+            SurfaceKind::Faces(_) | SurfaceKind::Bars(_) | SurfaceKind::Analytical(_) => &[],
         });
+        let of_bodies = self.model.rigid_bodies.iter().flat_map(|body| [&body.reference, &body.rotation]);
         let of_equations = self.model.equations.iter().flat_map(|equation| &equation.terms).map(|(node, ..)| node);
-        for node in of_elements.chain(of_surfaces).chain(of_equations) {
+        for node in of_elements.chain(of_surfaces).chain(of_equations).chain(of_bodies) {
             has_purpose[node.index()] = true;
         }
         let loose: Vec<_> = (has_purpose.iter().zip(&self.model.mesh.node_labels))

@@ -121,6 +121,24 @@ impl Builder<'_> {
             self.report.error(row.at, PAIR, message, "define it by faces, or exchange the surfaces");
             return false;
         }
+        if let SurfaceKind::Bars(_) = second.kind {
+            let message = format!("the primary surface {} is made of bars, which have no faces", second.name);
+            self.report.error(row.at, PAIR, message, "exchange the surfaces: bars can be secondary");
+            return false;
+        }
+        if let SurfaceKind::Analytical(_) = first.kind {
+            let message = format!("the secondary surface {} is analytical: it has no nodes", first.name);
+            self.report.error(row.at, PAIR, message, "exchange the surfaces: analytical surfaces are primary");
+            return false;
+        }
+        if let SurfaceKind::Analytical(index) = second.kind
+            && self.model.mesh.analytical[index as usize].body.is_none()
+        {
+            let message = format!("the analytical surface {} belongs to no rigid body", second.name);
+            let remedy = "add *RIGID BODY, ANALYTICAL SURFACE=…, REF NODE=…";
+            self.report.error(row.at, PAIR, message, remedy);
+            return false;
+        }
         if let SurfaceKind::Faces(faces) = &first.kind
             && let Some(face) = faces.iter().find(|&&face| self.model.mesh.face_nodes(face).is_quadratic())
         {
@@ -143,6 +161,8 @@ impl Builder<'_> {
         let size = |kind: &SurfaceKind| match kind {
             SurfaceKind::Faces(faces) => faces.iter().map(|&face| self.model.mesh.face_nodes(face).len()).sum(),
             SurfaceKind::Nodes(nodes) => nodes.len(),
+            SurfaceKind::Bars(bars) => 2 * bars.len(),
+            SurfaceKind::Analytical(index) => self.model.mesh.analytical[*index as usize].segments.len(),
         };
         if !self.budget.take(size(&first.kind) + size(&second.kind), row.at, PAIR, self.report) {
             return false;
@@ -170,6 +190,11 @@ impl Builder<'_> {
         let mesh = &self.model.mesh;
         let mut nodes = match &mesh.surfaces[surface.index()].kind {
             SurfaceKind::Nodes(nodes) => nodes.clone(),
+            SurfaceKind::Bars(bars) => bars.iter().flat_map(|bar| mesh.elements.nodes(bar.index())).copied().collect(),
+            SurfaceKind::Analytical(index) => {
+                let body = mesh.analytical[*index as usize].body;
+                body.map(|body| self.model.rigid_bodies[body as usize].reference).into_iter().collect()
+            }
             SurfaceKind::Faces(faces) => faces.iter().flat_map(|&face| mesh.face_nodes(face).to_vec()).collect(),
         };
         nodes.sort_unstable();

@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::model::{Dialect, ElementId, Material, MaterialId, NodeId, RigidBody};
+use crate::model::{Dialect, ElementId, Material, MaterialId, NodeId, RigidBody, SurfaceKind};
 
 use super::super::card::Card;
 use super::super::lex::{self, looks_numeric, unquoted};
@@ -105,6 +105,9 @@ impl Builder<'_> {
         let rotations = &mut self.model.mesh.rotations;
         let at = rotations.partition_point(|&(other, _)| other < reference);
         rotations.insert(at, (reference, rotation));
+        if let Some(name) = card.parameters.value("ANALYTICAL SURFACE") {
+            self.rigid_surface(name, card)?;
+        }
         self.model.rigid_bodies.push(RigidBody { reference, rotation, nodes, place: self.map.place(card.at) });
         self.rigid_at.push(card.at);
         Some(())
@@ -143,6 +146,29 @@ impl Builder<'_> {
             }
         }
         Some(elements)
+    }
+
+    /// Gives an analytical surface to the body that comes next.
+    fn rigid_surface(&mut self, name: &str, card: &Card) -> Option<()> {
+        let position = self.surfaces.refer(name, card.at, RIGID, self.report)?;
+        let (mesh, next) = (&mut self.model.mesh, self.model.rigid_bodies.len() as u32);
+        let definition = &mesh.surfaces[position as usize];
+        let SurfaceKind::Analytical(index) = definition.kind else {
+            let message = format!("surface {} is not analytical", definition.name);
+            self.report.error(
+                card.at,
+                RIGID,
+                message,
+                "name a surface of TYPE=CYLINDER or TYPE=REVOLUTION, or give ELSET",
+            );
+            return None;
+        };
+        if mesh.analytical[index as usize].body.replace(next).is_some() {
+            let message = format!("surface {} belongs to another rigid body already", definition.name);
+            self.report.error(card.at, RIGID, message, "name each surface in one body");
+            return None;
+        }
+        Some(())
     }
 
     /// Node of a parameter: a number, or a set of one node.

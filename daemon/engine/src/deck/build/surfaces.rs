@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::model::{ElementFace, ElementId, Mesh, NodeId, Surface, SurfaceKind};
+use crate::model::{ElementFace, ElementId, ElementKind, Mesh, NodeId, Surface, SurfaceKind, Sweep};
 
 use super::super::card::{Body, Card, Faces, Members};
 use super::super::members::{FACE_REMEDY, SNEG, SPOS};
@@ -25,12 +25,33 @@ impl Builder<'_> {
             let mut sound = !card.faulty;
             let kind = match &card.body {
                 Body::Members(members) => SurfaceKind::Nodes(self.node_members(card, members, &mut sound)),
-                Body::Faces(faces) => SurfaceKind::Faces(self.face_members(card.at, faces, &mut sound)),
+                Body::Faces(faces) => {
+                    let (faces, bars) = self.face_members(card.at, faces, &mut sound);
+                    if !faces.is_empty() && !bars.is_empty() {
+                        let message = format!("surface {name} has faces and bars");
+                        self.report.error(card.at, SURFACE, message, "give the bars a surface of their own");
+                        sound = false;
+                    }
+                    if faces.is_empty() && !bars.is_empty() {
+                        SurfaceKind::Bars(bars)
+                    } else {
+                        SurfaceKind::Faces(faces)
+                    }
+                }
+                Body::Lines(_) => {
+                    let sweep =
+                        if card.parameters.word("TYPE") == "CYLINDER" { Sweep::Translation } else { Sweep::Revolution };
+                    self.analytical_surface(card, sweep).unwrap_or_else(|| {
+                        sound = false;
+                        SurfaceKind::Faces(Vec::new())
+                    })
+                }
                 _ => SurfaceKind::Faces(Vec::new()),
             };
             let empty = match &kind {
                 SurfaceKind::Nodes(nodes) => nodes.is_empty(),
                 SurfaceKind::Faces(faces) => faces.is_empty(),
+                SurfaceKind::Bars(_) | SurfaceKind::Analytical(_) => false,
             };
             if empty && sound {
                 self.report.error(
@@ -72,12 +93,14 @@ impl Builder<'_> {
         nodes
     }
 
-    fn face_members(&mut self, at: At, members: &Faces, sound: &mut bool) -> Vec<ElementFace> {
-        let mut faces = Vec::new();
+    /// Faces, and bars named without a face.
+    fn face_members(&mut self, at: At, members: &Faces, sound: &mut bool) -> (Vec<ElementFace>, Vec<ElementId>) {
+        let (mut faces, mut bars) = (Vec::new(), Vec::new());
         // Elements whose free faces are wanted.
         let mut exposed: Vec<ElementId> = Vec::new();
         for &(label, face, at) in &members.labels {
             match self.element(label, at, SURFACE) {
+                Some(element) if face == 0 && self.is_bar(element) => bars.push(element),
                 Some(element) => match self.without_face(&[element], face) {
                     None if face == 0 => exposed.push(element),
                     None => faces.push(ElementFace { element, face: position(face) }),
@@ -98,6 +121,10 @@ impl Builder<'_> {
             if !self.budget.take(elements.len(), *at, SURFACE, self.report) {
                 break;
             }
+            if *face == 0 && !elements.is_empty() && elements.iter().all(|&element| self.is_bar(element)) {
+                bars.extend(elements);
+                continue;
+            }
             match (self.without_face(elements, *face), *face) {
                 (None, 0) => exposed.extend(elements),
                 (None, face) => {
@@ -116,7 +143,13 @@ impl Builder<'_> {
         }
         faces.sort_unstable();
         faces.dedup();
-        faces
+        bars.sort_unstable();
+        bars.dedup();
+        (faces, bars)
+    }
+
+    fn is_bar(&self, element: ElementId) -> bool {
+        self.model.mesh.elements.kind(element.index()) == ElementKind::T3D2
     }
 }
 
