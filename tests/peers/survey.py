@@ -32,7 +32,6 @@ REASONS = (
     ("*MODEL CHANGE", "", "contact that is switched off and on"),
     ("*GAP CONDUCTANCE", "", "heat transfer"),
     ("*GAP", "", "gap elements"),
-    ("*ELEMENT", "GAPUNI", "gap elements"),
     ("*ELEMENT", "type C", "axisymmetric or plane elements"),
     ("*ELEMENT", "type S", "shells"),
     ("*ELEMENT", "type B", "beams"),

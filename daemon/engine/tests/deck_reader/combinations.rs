@@ -188,6 +188,12 @@ fn contact_elements_that_slide_are_refused_with_a_reason() {
 }
 
 #[test]
+fn the_data_of_a_refused_law_are_not_complained_about() {
+    let found = read(&with(LAW, "PRESSURE-OVERCLOSURE=TIED\n1e6\n")).diagnostics;
+    assert_eq!(found.len(), 1, "{}", listing(&found));
+}
+
+#[test]
 fn interactions_and_pairs_may_stand_in_explicit_steps() {
     let card = "*SURFACE INTERACTION, NAME=SI\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e6\n\
         *CONTACT PAIR, INTERACTION=SI, SMALL SLIDING\nSECOND, FIRST\n";

@@ -47,6 +47,9 @@ impl Builder<'_> {
         let (items, what) = match (asked.augmented || asked.penalty, nonlinear) {
             (false, _) => {
                 let Some(line) = card.first_line() else { return Some(Enforcement::Lagrange) };
+                if card.faulty {
+                    return None; // The line may belong to what was refused.
+                }
                 self.report.error(
                     line.at,
                     BEHAVIOR,
