@@ -191,7 +191,7 @@ impl AnalyticalSurface {
         self.sweep == Sweep::Translation && self.segments[anchor.face as usize].centre.is_none()
     }
 
-    /// Size of an anchor's segment [length].
+    /// Size of an anchor's segment \[length\].
     pub fn size(&self, anchor: &Anchor) -> f64 {
         size(&self.segments[anchor.face as usize])
     }

@@ -10,7 +10,7 @@ pub struct AnalyticalSurface {
     pub body: Option<u32>,
     /// How the profile is swept.
     pub sweep: Sweep,
-    /// Origin of the local coordinates [length].
+    /// Origin of the local coordinates \[length\].
     pub origin: [f64; 3],
     /// Unit vectors of the local axes, right-handed.
     pub axes: [[f64; 3]; 3],
