@@ -2,15 +2,18 @@
 
 from dataclasses import dataclass, field
 
+from oracle.enumeration import hard, linear, tabular
+
 NUMBERS = "{0!r}, {1!r}"
 
 
 @dataclass
 class Behavior:
-    """Lines after *SURFACE INTERACTION, and words for what they are."""
+    """Lines after *SURFACE INTERACTION, words for what they are, and the law for the oracle where points keep one."""
 
     lines: list[str]
     words: set[str] = field(default_factory=set)
+    law: object = None
 
     @property
     def plain(self):
@@ -28,21 +31,23 @@ def softened(rng):
     kind = str(rng.choice(["linear", "tabular", "exponential"]))
     card = f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={kind.upper()}"
     if kind == "linear":
-        return Behavior([card, repr(size(rng, 1.0, 8.0))], {kind})
+        stiffness = size(rng, 1.0, 8.0)
+        return Behavior([card, repr(stiffness)], {kind}, linear(stiffness))
     if kind == "exponential":
-        return Behavior([card, NUMBERS.format(size(rng, -4.0, -1.7), size(rng, -2.0, 2.0))], {kind})
-    pressure, overclosure, rows = 0.0, float(rng.uniform(-0.005, 0.003)), []
+        data = size(rng, -4.0, -1.7), size(rng, -2.0, 2.0)
+        return Behavior([card, NUMBERS.format(*data)], {kind}, data)
+    pressure, overclosure, points = 0.0, float(rng.uniform(-0.005, 0.003)), []
     for _ in range(int(rng.integers(2, 6))):
-        rows.append(NUMBERS.format(pressure, overclosure))
+        points.append((pressure, overclosure))
         pressure, overclosure = pressure + size(rng, -1.0, 2.0), overclosure + size(rng, -4.0, -2.0)
-    return Behavior([card, *rows], {kind})
+    return Behavior([card, *(NUMBERS.format(*point) for point in points)], {kind}, tabular(points))
 
 
 def enforced(rng):
     """Hard contact by multipliers, augmented Lagrange or a penalty, with automatic or given stiffness."""
     kind = str(rng.choice(["hard", "augmented", "penalty", "nonlinear"], p=[0.4, 0.3, 0.15, 0.15]))
     if kind == "hard":
-        return Behavior(["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"], {kind})
+        return Behavior(["*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD"], {kind}, hard())
     card = {"augmented": "AUGMENTED LAGRANGE", "penalty": "PENALTY=LINEAR", "nonlinear": "PENALTY=NONLINEAR"}[kind]
     lines = [f"*SURFACE BEHAVIOR, {card}"]
     if rng.random() < 0.5:
@@ -63,6 +68,8 @@ def random_behavior(rng):
         data = ", ".join(map(repr, (size(rng, -2.0, 2.0), size(rng, -3.0, -1.0), float(rng.uniform(0.0, 0.95)))))
         found.lines += ["*CONTACT DAMPING, DEFINITION=DAMPING COEFFICIENT", data]
         found.words.add("damping")
+        # The pressure of a closed point has its viscous part in it.
+        found.law = None
     if rng.random() < 0.2:
         found.lines.append("*FRICTION, ROUGH")
         found.words.add("rough")
@@ -81,10 +88,12 @@ def random_controls(rng, name, behavior):
         parameters += [f"MAXCHP={int(rng.integers(0, 8))}", f"UERRMX={size(rng, -5.0, -2.3)!r}"]
         parameters.append(f"PERRMX={size(rng, -2.0, 1.0)!r}")
         words.add("modified hard")
+        behavior.law = None
     elif rng.random() < 0.1:
         parameters.append("STABILIZE")
         data = [f"{size(rng, -3.0, 1.0)!r}, {float(rng.choice([0.0, 0.3]))!r}, {size(rng, -2.0, 0.0)!r}"]
         words.add("stabilize")
+        behavior.law = None
     if not parameters:
         return [], words
     return [", ".join([f"*CONTACT CONTROLS, {name}", *parameters]), *data], words

@@ -17,12 +17,14 @@ SCENES = ["held", "pressed", "sprung"]
 
 @dataclass
 class Drawn:
-    """A deck: its text, what it exercises, and whether it must converge (frictionless hard or softened contact alone)."""
+    """A deck: its text, what it exercises, whether it must converge (frictionless hard or softened contact alone), and by pair the
+    law that its points keep, where they keep one."""
 
     seed: int
     text: str
     words: set[str]
     plain: bool
+    laws: dict[str, object]
 
 
 class Scene:
@@ -98,6 +100,8 @@ class Scene:
                 word = "ADD" if active[index - 1] else "REMOVE"
                 lines += [f"*MODEL CHANGE, TYPE=CONTACT PAIR, {word}", f"SEC{index}, PRI{index}"]
                 words = words | {"removal"}
+                # A pair that is away keeps no law.
+                behavior.law = None
             if rng.random() < 0.1:
                 shrink = number == 0 and rng.random() < 0.5
                 allowed = "" if shrink else f", {float(rng.uniform(0.0005, 0.01))!r}"
@@ -151,4 +155,5 @@ def random_robust_deck(seed):
         found, words = scene.step(number, active, words)
         lines += [*found, *OUTPUT]
     plain = all(behavior.plain for behavior in scene.behaviors) and not words & {"modified hard", "stabilize"}
-    return Drawn(seed, "\n".join(lines) + "\n", words, plain)
+    laws = {f"SEC{i}_PRI{i}": behavior.law for i, behavior in enumerate(scene.behaviors, 1) if behavior.law is not None}
+    return Drawn(seed, "\n".join(lines) + "\n", words, plain, laws)

@@ -8,10 +8,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import support
+from oracle import laws
 
 from .decks import random_robust_deck
 
 SECONDS_MAX = 20.0
+# How well points keep their law: pressures against the largest. Overclosures are known to a part of the extent of the deck, that
+# to which the motions of bodies are balanced that contact alone holds; a stiff law makes pressures of it.
+LAW_KEPT, BALANCED, EXTENT = 1e-9, 1e-12, 2.0
 # Done, the input is wrong, the solution could not be continued.
 CODES = (0, 2, 3)
 
@@ -29,11 +33,31 @@ class Outcome:
     reason: str
     cutbacks: int = 0
     augmentations: int = 0
+    law: float = 0.0
 
     @property
     def clean(self):
-        """Completed, with nothing that the audit finds."""
-        return self.code == 0 and not self.audit
+        """Completed, with nothing that the audit finds and every law kept."""
+        return self.code == 0 and not self.audit and self.law <= LAW_KEPT
+
+
+def law_violation(drawn, result):
+    """How far any point is from the law of its pair, relative to LAW_KEPT's scales; 0 is exact."""
+    table = result.table("contact")
+    strength = max((abs(float(row["CPRESS"])) for row in table), default=0.0) or 1.0
+    worst = 0.0
+    for row in table:
+        law = drawn.laws.get(row["pair"])
+        if law is None:
+            continue
+        h, p = -float(row["COPEN"]), float(row["CPRESS"])
+        if laws.is_hard(law):
+            product = min(abs(h) / EXTENT, abs(p) / strength)
+            worst = max(worst, h / EXTENT, -p / strength, product)
+        else:
+            value, slope = laws.pressure(law, h)
+            worst = max(worst, (abs(p - value) - slope * BALANCED * EXTENT) / strength)
+    return worst
 
 
 def run(seed):
@@ -49,6 +73,7 @@ def run(seed):
             seconds = time.perf_counter() - started
             return Outcome(seed, sorted(drawn.words), drawn.plain, None, [], seconds, "did not end in time")
         seconds = time.perf_counter() - started
+        law = law_violation(drawn, support.Result(Path(folder), "deck")) if done.returncode == 0 else 0.0
         summary = Path(folder) / "deck.json"
         told = json.loads(summary.read_text()) if summary.is_file() else {"audit": [], "reason": None, "steps": []}
     errors = [line.replace(folder, "") for line in done.stderr.splitlines() if "warning:" not in line]
@@ -56,7 +81,11 @@ def run(seed):
     if "panicked" in done.stderr:
         reason = "panic: " + " | ".join(errors[:3])
     counts = [sum(step[name] for step in told["steps"]) for name in ("cutbacks", "augmentations")]
-    return Outcome(seed, sorted(drawn.words), drawn.plain, done.returncode, told["audit"], seconds, reason, *counts)
+    if law > LAW_KEPT:
+        reason = f"{reason} law kept to {law:.1e} only".strip()
+    return Outcome(
+        seed, sorted(drawn.words), drawn.plain, done.returncode, told["audit"], seconds, reason, *counts, law
+    )
 
 
 def figures(outcomes):
@@ -74,6 +103,7 @@ def figures(outcomes):
         "neither": sum(outcome.code not in CODES for outcome in outcomes),
         "with cutbacks": sum(outcome.cutbacks > 0 for outcome in outcomes),
         "augmentations": sum(outcome.augmentations for outcome in outcomes),
+        "law kept to": max(outcome.law for outcome in outcomes),
         "seconds, median": times[len(times) // 2],
         "seconds, longest": times[-1],
     }

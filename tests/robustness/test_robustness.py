@@ -1,8 +1,12 @@
 """Random decks end, and end well; the whole set is run by `make robustness`."""
 
+from dataclasses import dataclass
+
+from oracle.enumeration import hard, linear
 from oracle.parallel import in_parallel
 
 from . import runner
+from .decks import Drawn
 from .runner import Outcome, broken
 
 DECKS = 150
@@ -36,6 +40,30 @@ def test_the_same_seed_gives_the_same_deck():
     assert (
         runner.random_robust_deck(17).text == runner.random_robust_deck(17).text != runner.random_robust_deck(18).text
     )
+
+
+@dataclass
+class Told:
+    """A result with a contact table of one point."""
+
+    overclosure: float
+    pressure: float
+
+    def table(self, name):
+        """The rows."""
+        assert name == "contact"
+        return [{"pair": "SEC1_PRI1", "COPEN": repr(-self.overclosure), "CPRESS": repr(self.pressure)}]
+
+
+def test_broken_laws_are_noticed():
+    """A point off its law, an overlap and a tension of hard contact, and forces across a gap."""
+    for law, good, bad in (
+        (linear(1e3), [(0.002, 2.0), (-0.1, 0.0)], [(0.002, 2.00001), (-0.1, 1.0), (0.002, 0.0)]),
+        (hard(), [(0.0, 5.0), (-0.3, 0.0), (0.0, 0.0)], [(1e-6, 5.0), (0.0, -1.0), (-0.3, 1.0)]),
+    ):
+        drawn = Drawn(0, "", set(), True, {"SEC1_PRI1": law})
+        assert all(runner.law_violation(drawn, Told(*point)) <= runner.LAW_KEPT for point in good)
+        assert all(runner.law_violation(drawn, Told(*point)) > runner.LAW_KEPT for point in bad)
 
 
 def outcome(seed, code=0, audit=(), plain=False, reason=""):
