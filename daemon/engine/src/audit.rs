@@ -7,6 +7,8 @@ use crate::simulation::Simulation;
 const BALANCE_TOLERANCE: f64 = 1e-8;
 /// Overclosure of a closed hard point, relative to the largest overclosure that contact prevents.
 const HARD_TOLERANCE: f64 = 1e-8;
+/// Overclosure, relative to the size of the model and the way that bodies go, that rounding explains.
+const PLACE_ROUNDING: f64 = 1e-13;
 /// Part of a tolerance of the deck by which rounding may exceed it.
 const TOLERATED: f64 = 1e-9;
 /// Overclosure, relative to the face, beyond which a softened law is outside small sliding (HCRIT: half a face).
@@ -55,6 +57,9 @@ impl Simulation {
         let prepared = &self.prepared;
         let moment = Self::moment(prepared, self.state.step as usize, self.state.step_time);
         let scale = self.work.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
+        // Of coordinates, and of motions that go a long way.
+        let motion = self.state.motions.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+        let rounding = PLACE_ROUNDING * prepared.contact.extent.max(motion);
         let force_scale = self.state.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
         let (mut tension, mut overlap, mut deep) = (Vec::new(), Vec::new(), Vec::new());
         for (i, point) in prepared.points.iter().enumerate() {
@@ -74,7 +79,7 @@ impl Simulation {
                 Some(Enforcement::Lagrange | Enforcement::AugmentedLagrange(_)) => moment.is_active(i),
                 Some(Enforcement::Penalty(_) | Enforcement::NonlinearPenalty(_)) | None => false,
             };
-            if hard && self.state.step_time > 0.0 && overclosure > HARD_TOLERANCE * scale + allowed {
+            if hard && self.state.step_time > 0.0 && overclosure > HARD_TOLERANCE * scale + rounding + allowed {
                 overlap.push(label);
             }
             if overclosure > OVERCLOSURE_MAX * point.face_size {

@@ -99,7 +99,12 @@ impl ContactSolver {
         if system.gap_motions.columns == 0 {
             let view = system.held(problem.rows, None);
             let scale = problem.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
-            return self.solve_held(&view, problem.free, scale, unknowns);
+            let counts = self.solve_held(&view, problem.free, scale, unknowns)?;
+            if self.share(&view, scale, unknowns) {
+                view.relief(unknowns.forces, unknowns.relief);
+                system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
+            }
+            return Ok(counts);
         }
         let mut work = std::mem::take(&mut self.balance);
         let result = self.balance(system, problem, unknowns, &mut work);
@@ -184,6 +189,10 @@ impl ContactSolver {
                 if polished || self.laws_hold(system, problem, unknowns) {
                     if steps.is_held {
                         self.refine(system, problem, &view, &held.springs, steps, unknowns);
+                    }
+                    if self.share(&view, scale, unknowns) {
+                        system.relief(unknowns.forces, unknowns.relief);
+                        system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
                     }
                     return Ok(counts);
                 }

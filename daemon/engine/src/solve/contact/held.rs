@@ -70,9 +70,9 @@ pub struct ContactSolver {
     factor: Vec<f64>,
     factor_points: Vec<u32>,
     factor_compliance: Vec<f64>,
-    factor_rows: Vec<u32>,
+    pub(super) factor_rows: Vec<u32>,
     /// Compliance below which a row on its wall cannot be moved [length/force].
-    own_min: f64,
+    pub(super) own_min: f64,
     factors: u32,
     /// Overclosures after each iteration of the last solve.
     #[cfg(test)]
@@ -365,6 +365,11 @@ impl ContactSolver {
             // Without a factor nothing is known: the iteration ends as not converged.
             self.trial[i as usize] = if solved { *force } else { f64::NAN };
         }
+    }
+
+    /// Whether a row of the factor is on its wall.
+    pub(super) fn is_on_wall(&self, row: u32) -> bool {
+        self.on_wall[row as usize]
     }
 
     /// What the laws miss at the rows of the factor, as overclosures: `h − position` on a wall, `C (F(h) − F)` on a curve.

@@ -14,6 +14,7 @@ mod refinement;
 mod row;
 #[cfg(test)]
 mod row_tests;
+mod sharing;
 mod system;
 #[cfg(test)]
 mod tests;
