@@ -39,6 +39,8 @@ mod analytical_tests;
 #[cfg(test)]
 mod column_tests;
 #[cfg(test)]
+mod gap_tests;
+#[cfg(test)]
 mod load_pattern_tests;
 #[cfg(test)]
 mod patch_tests;
@@ -46,3 +48,5 @@ mod patch_tests;
 mod rigid_tests;
 #[cfg(test)]
 mod test_mesh;
+#[cfg(test)]
+mod underlying_tests;

@@ -8,4 +8,4 @@ pub mod points;
 mod primary;
 mod search;
 mod secondary;
-mod underlying;
+pub(crate) mod underlying;
