@@ -187,11 +187,16 @@ impl ContactSolver {
                 counts.factorizations = self.sparse.factorizations - factorizations;
                 // The last step was taken whole: `relief` is `W F` as `relief` of the view computes it, unless points join that were
                 // left out because their force moves nothing: it is that of their curve all the same.
-                let left_out = |i: usize| view.rows[i].has_curve() && !self.is_active[i];
-                let force = |i: usize| view.rows[i].evaluate(view.behaviors, overclosures[i]).force;
-                if (0..n).any(|i| left_out(i) && force(i) != 0.0) {
-                    for i in (0..n).filter(|&i| left_out(i)) {
-                        forces[i] = force(i);
+                let left_out = |i: usize| {
+                    let at = view.rows[i].evaluate(view.behaviors, overclosures[i]);
+                    let negligible = view.rows[i].has_curve() && at.stiffness * view.own(i) <= NEGLIGIBLE_STIFFNESS;
+                    (negligible && !self.is_active[i]).then_some(at.force)
+                };
+                if (0..n).any(|i| left_out(i).is_some_and(|force| force != 0.0)) {
+                    for i in 0..n {
+                        if let Some(force) = left_out(i) {
+                            forces[i] = force;
+                        }
                     }
                     view.relief(forces, relief);
                 }
