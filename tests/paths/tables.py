@@ -17,8 +17,9 @@ FAMILIES = {
     "rotation": ("UR",),
     "place": ("XN", "XS", "XT"),
 }
-# Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits.
-RESOLVED = 1e-6
+# Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits, and TOLERANCE of this part
+# is 1e-14 of the size, some fifty of their roundings.
+RESOLVED = 1e-4
 
 
 def tables(folder, deck, path):
