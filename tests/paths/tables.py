@@ -18,8 +18,8 @@ FAMILIES = {
     "place": ("XN", "XS", "XT"),
 }
 # Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits, and TOLERANCE of this part
-# is 1e-14 of the size, some fifty of their roundings.
-RESOLVED = 1e-4
+# is 1e-13 of the size, some five hundred of their roundings.
+RESOLVED = 1e-3
 
 
 def tables(folder, deck, path):

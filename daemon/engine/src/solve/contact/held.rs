@@ -577,7 +577,9 @@ impl ContactSolver {
         if residual <= FORCE_TOLERANCE * scale {
             return true;
         }
-        // What the rounding of the overclosure does to the force cannot be asked for.
-        residual <= view.rounding(i, free[i], overclosure, forces) * at.stiffness
+        // What the rounding of the overclosure does to the force cannot be asked for; at a kink the slope beyond it counts.
+        let rounding = view.rounding(i, free[i], overclosure, forces);
+        residual <= rounding * at.stiffness
+            || residual <= rounding * row.evaluate(view.behaviors, overclosure + rounding).stiffness
     }
 }
