@@ -1,7 +1,7 @@
 //! Totals of a contact pair as the manual names them: forces, moments about the origin, centres of force, area.
 
 use super::components::traction;
-use crate::simulation::{ContactPointResult, PairTotals, PreparedModel};
+use crate::simulation::{ContactPointInfo, ContactPointResult, PairTotals, PreparedModel};
 
 /// Totals of a pair: of pressure (N), of friction (S), of both (T).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,6 +16,9 @@ pub(super) struct Resultants {
     pub area: f64,
 }
 
+/// Force of a point, relative to the largest of all, that has no part in a centre.
+const FORCE_ROUNDING: f64 = 1e-10;
+
 /// Names of the families: force, moment and centre of pressure, of friction, and of both.
 pub(super) const FAMILIES: [[&str; 3]; 3] = [["CFN", "CFS", "CFT"], ["CMN", "CMS", "CMT"], ["XN", "XS", "XT"]];
 
@@ -28,7 +31,13 @@ impl Resultants {
     ) -> Vec<Self> {
         let mut all: Vec<Self> = totals.iter().map(Self::without_centres).collect();
         let mut weights = vec![[0.0; 3]; all.len()];
-        for (point, result) in prepared.contact_points().iter().zip(contact) {
+        let points = || prepared.contact_points().iter().zip(contact);
+        let largest = points().map(|(point, result)| (traction(result)[2] * point.area).abs()).fold(0.0, f64::max);
+        // Where forces are rounding, so would their centre be.
+        let carries = |&(point, result): &(&ContactPointInfo, &ContactPointResult)| {
+            (traction(result)[2] * point.area).abs() > FORCE_ROUNDING * largest
+        };
+        for (point, result) in points().filter(carries) {
             let at = prepared.model().mesh.nodes[point.node.index()];
             let (sums, weights) = (&mut all[point.pair as usize].centre, &mut weights[point.pair as usize]);
             for ((sum, weight), traction) in sums.iter_mut().zip(weights).zip(traction(result)) {
