@@ -17,9 +17,8 @@ FAMILIES = {
     "rotation": ("UR",),
     "place": ("XN", "XS", "XT"),
 }
-# Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits, and TOLERANCE of this part
-# is 1e-13 of the size, some five hundred of their roundings.
-RESOLVED = 1e-3
+# Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits.
+RESOLVED = 1e-6
 
 
 def tables(folder, deck, path):

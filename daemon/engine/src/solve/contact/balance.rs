@@ -100,7 +100,7 @@ impl ContactSolver {
             let view = system.held(problem.rows, None);
             let scale = problem.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
             let counts = self.solve_held(&view, problem.free, scale, unknowns)?;
-            if self.share(&view, scale, unknowns) {
+            if self.share(&view, scale, unknowns).is_some() {
                 view.relief(unknowns.forces, unknowns.relief);
                 system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
             }
@@ -190,9 +190,16 @@ impl ContactSolver {
                     if steps.is_held {
                         self.refine(system, problem, &view, &held.springs, steps, unknowns);
                     }
-                    if self.share(&view, scale, unknowns) {
+                    if let Some(rows) = self.share(&view, scale, unknowns) {
                         system.relief(unknowns.forces, unknowns.relief);
                         system.overclosures(problem.free, unknowns.relief, unknowns.motions, unknowns.overclosures);
+                        // One point may carry a block that touches with many: then only all of them hold its place.
+                        if !steps.is_held && self.join(&view, &rows) {
+                            self.newton_step(system, &view, &held.springs, steps);
+                            if steps.is_held {
+                                self.refine(system, problem, &view, &held.springs, steps, unknowns);
+                            }
+                        }
                     }
                     return Ok(counts);
                 }

@@ -377,6 +377,25 @@ impl ContactSolver {
         self.on_wall[row as usize]
     }
 
+    /// Takes rows that touch their walls as the rows of the factor; whether they have one. The next solve begins with its own.
+    pub(super) fn join(&mut self, view: &View<'_>, rows: &[u32]) -> bool {
+        for &i in rows {
+            let i = i as usize;
+            (self.on_wall[i], self.is_active[i]) = (true, true);
+            (self.compliance[i], self.onset[i]) = (0.0, view.rows[i].position);
+        }
+        self.factor_points.clear();
+        self.factor_rows.clear();
+        self.factor_rows.extend_from_slice(rows);
+        self.fill_factor(view);
+        self.factors += 1;
+        let joined = linear::cholesky_in_place(&mut self.factor, rows.len(), &mut self.scratch);
+        if !joined {
+            self.forget_factor();
+        }
+        joined
+    }
+
     /// What the laws miss at the rows of the factor, as overclosures: `h − position` on a wall, `C (F(h) − F)` on a curve.
     pub(super) fn law_gaps(&self, view: &View<'_>, overclosures: &[f64], forces: &[f64], out: &mut [f64]) {
         for &i in &self.factor_rows {

@@ -27,25 +27,26 @@ const DEPENDENT: f64 = 1e-9;
 const CORRECTIONS: usize = 3;
 
 impl ContactSolver {
-    /// Shares the forces of rows that depend on each other; whether any changed. `free_scale` is what rounding is judged against.
-    pub(super) fn share(&mut self, view: &View<'_>, free_scale: f64, unknowns: &mut Unknowns<'_>) -> bool {
-        let Compliance::Dense(m) = view.compliance else { return false };
+    /// Shares the forces of rows that depend on each other; the rows that the others depend on if any force changed. `free_scale` is
+    /// what rounding is judged against.
+    pub(super) fn share(&self, view: &View<'_>, free_scale: f64, unknowns: &mut Unknowns<'_>) -> Option<Vec<u32>> {
+        let Compliance::Dense(m) = view.compliance else { return None };
         // Only walls depend on each other: a curve has a compliance of its own.
         if self.factor_rows.is_empty() || self.factor_rows.iter().any(|&i| !self.is_on_wall(i)) {
-            return false;
+            return None;
         }
         let near = TOUCHING * free_scale + TOUCHING_ROUNDING * view.extent;
         let rows = || (0..view.rows.len() as u32).filter(|&i| self.touches(view, i, near, unknowns.overclosures));
         if rows().count() == self.factor_rows.len() {
-            return false;
+            return None;
         }
         let touching: Vec<u32> = rows().collect();
         let kept = independent(m, &touching);
         if touching.len() == kept.len() {
-            return false;
+            return None;
         }
         let root: Vec<f64> = touching.iter().map(|&t| view.rows[t as usize].area.sqrt()).collect();
-        let Some((basis, triangle)) = orthonormal(m, &touching, &kept, &root) else { return false };
+        let (basis, triangle) = orthonormal(m, &touching, &kept, &root)?;
         let effect = |forces: &[f64]| -> Vec<f64> {
             let of_row =
                 |&k: &u32| touching.iter().zip(forces).map(|(&t, f)| m.column(k as usize)[t as usize] * f).sum();
@@ -67,14 +68,14 @@ impl ContactSolver {
         let largest = shared.iter().fold(0.0f64, |m, f| m.max(f.abs()));
         let pulls = |(&t, f): (&u32, &f64)| view.rows[t as usize].wall == Wall::OneSided && *f < -1e-12 * largest;
         if !largest.is_finite() || touching.iter().zip(&shared).any(pulls) {
-            return false;
+            return None;
         }
         for (&t, f) in touching.iter().zip(&shared) {
             let t = t as usize;
             unknowns.forces[t] = if view.rows[t].wall == Wall::OneSided { f.max(0.0) } else { *f };
             unknowns.closed[t] = view.rows[t].wall == Wall::TwoSided || *f > 1e-11 * largest;
         }
-        true
+        Some(kept)
     }
 
     /// Whether a row is in the factor, or on its wall to rounding where forces can move it.
