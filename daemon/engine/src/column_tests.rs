@@ -33,6 +33,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
     };
     mesh.surfaces = vec![face(1, 0), face(0, 1)];
     let boundary = |nodes: std::ops::Range<u32>, direction, magnitude| Boundary {
+        kind: Default::default(),
         region: Region::Set(SetId(0)),
         region_name: "TOP".into(),
         nodes: nodes.map(NodeId).collect(),
@@ -45,9 +46,16 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
     initial.extend((0..2).map(|d| boundary(12..16, d, 0.0)));
     Model {
         mesh,
-        materials: vec![Material { name: "M".into(), youngs_modulus: 500.0, poissons_ratio: 0.0, density: None }],
+        materials: vec![Material {
+            name: "M".into(),
+            youngs_modulus: 500.0,
+            poissons_ratio: 0.0,
+            density: None,
+            damping: Default::default(),
+        }],
         interactions: vec![SurfaceInteraction::new("I", normal)],
         pairs: vec![ContactPair {
+            explicit: Default::default(),
             name: "S_P".into(),
             members: PairMembers::Surfaces(SurfacePair {
                 secondary: SurfaceId(0),
@@ -164,7 +172,7 @@ fn energy_is_balanced_to_the_order_of_the_trapezoidal_rule() {
         for node in &mut model.mesh.nodes[8..] {
             node[2] += 0.02;
         }
-        let Procedure::Static(control) = &mut model.steps[0].procedure;
+        let Procedure::Static(control) = &mut model.steps[0].procedure else { panic!("a static step") };
         control.increment_initial = 1.0 / increments;
         model.steps[0].increments_max = 10_000;
         let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
@@ -210,7 +218,7 @@ fn increments_have_the_same_bits_whoever_asks_for_them() {
     for direct in [true, false] {
         let build = || {
             let mut model = column(exponential(), 0.08);
-            let Procedure::Static(control) = &mut model.steps[0].procedure;
+            let Procedure::Static(control) = &mut model.steps[0].procedure else { panic!("a static step") };
             *control = StaticControl { increment_max: 0.05, direct, ..*control };
             let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
             Simulation::new(Arc::new(prepared))
@@ -230,7 +238,7 @@ fn increments_have_the_same_bits_whoever_asks_for_them() {
 #[test]
 fn automatic_increments_grow_up_to_the_largest() {
     let mut model = column(exponential(), 0.08);
-    let Procedure::Static(control) = &mut model.steps[0].procedure;
+    let Procedure::Static(control) = &mut model.steps[0].procedure else { panic!("a static step") };
     *control = StaticControl { increment_initial: 0.01, increment_max: 0.2, direct: false, ..*control };
     let prepared = PreparedModel::prepare(model, &PrepareOptions::default(), &mut |_| {}).expect("held");
     let mut s = Simulation::new(Arc::new(prepared));

@@ -43,7 +43,7 @@ impl Simulation {
         self.add_motions(&mut displacement);
         self.add_dependents(&mut displacement);
         let reaction = self.reactions(&displacement);
-        NodalSolution { displacement, reaction }
+        NodalSolution { displacement, reaction, ..NodalSolution::default() }
     }
 
     /// Adds `R α` on the free directions.
@@ -130,7 +130,9 @@ impl Simulation {
         match section {
             Connector::Bar { area } => vec![[force / area, 0.0, 0.0, 0.0, 0.0, 0.0]],
             Connector::Spring { .. } => vec![[force, 0.0, 0.0, 0.0, 0.0, 0.0]],
-            Connector::Mass { .. } | Connector::Inert => Vec::new(),
+            Connector::Dashpot { .. } | Connector::Mass { .. } | Connector::RotaryInertia { .. } | Connector::Inert => {
+                Vec::new()
+            }
         }
     }
 

@@ -57,9 +57,18 @@ pub fn fingerprint(model: &Model) -> u64 {
     text(format_args!("{:?}{:?}{:?}", model.materials, model.interactions, model.amplitudes));
     for pair in &model.pairs {
         text(format_args!("{:?}{:?}{:?}", pair.name, pair.members, pair.interaction));
+        if pair.explicit != Default::default() {
+            text(format_args!("{:?}", pair.explicit));
+        }
+    }
+    if !model.initial_velocities.is_empty() {
+        text(format_args!("{:?}", model.initial_velocities));
     }
     let mut boundary = |b: &crate::model::Boundary| {
-        text(format_args!("{:?}{:?}{}{}{:?}", b.region_name, b.nodes, b.direction, b.magnitude.to_bits(), b.amplitude))
+        text(format_args!("{:?}{:?}{}{}{:?}", b.region_name, b.nodes, b.direction, b.magnitude.to_bits(), b.amplitude));
+        if b.kind != Default::default() {
+            text(format_args!("{:?}", b.kind));
+        }
     };
     model.initial_boundaries.iter().for_each(&mut boundary);
     for step in &model.steps {

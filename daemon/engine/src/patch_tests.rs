@@ -36,6 +36,7 @@ fn patch(kind: ElementKind) -> Model {
         }
         for (direction, magnitude) in displacement(shape.nodes[n]).into_iter().enumerate() {
             boundaries.push(Boundary {
+                kind: Default::default(),
                 region: Region::Label(n as u32 + 1),
                 region_name: (n + 1).to_string(),
                 nodes: vec![NodeId(n as u32)],
@@ -48,7 +49,13 @@ fn patch(kind: ElementKind) -> Model {
     }
     Model {
         mesh,
-        materials: vec![Material { name: "M".into(), youngs_modulus: 210.0, poissons_ratio: 0.3, density: None }],
+        materials: vec![Material {
+            name: "M".into(),
+            youngs_modulus: 210.0,
+            poissons_ratio: 0.3,
+            density: None,
+            damping: Default::default(),
+        }],
         steps: vec![Step {
             name: "Step-1".into(),
             increments_max: 1,

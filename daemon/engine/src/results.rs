@@ -144,6 +144,10 @@ pub struct HistoryRow {
 pub struct NodalSolution {
     /// U \[length\].
     pub displacement: Vec<[f64; 3]>,
+    /// V [length/time]; empty in a static step. In an explicit step that of the middle of the last increment.
+    pub velocity: Vec<[f64; 3]>,
+    /// A [length/time²]; empty in a static step. In an explicit step that of the start of the last increment.
+    pub acceleration: Vec<[f64; 3]>,
     /// RF \[force\]: non-zero at prescribed directions only.
     pub reaction: Vec<[f64; 3]>,
 }

@@ -7,7 +7,7 @@ pub use crate::request::*;
 pub use crate::results::*;
 
 use crate::fingerprint::fingerprint;
-use crate::model::{Model, Procedure};
+use crate::model::Model;
 use crate::procedure::loading::Course;
 use crate::procedure::modified_hard::Verdict;
 use crate::solve::contact::{ContactSolver, Row};
@@ -108,17 +108,15 @@ impl Simulation {
         let mut step_starts = Vec::with_capacity(prepared.model.steps.len());
         let mut total = 0.0;
         for step in &prepared.model.steps {
-            let Procedure::Static(control) = step.procedure;
             step_starts.push(total);
-            total += control.period;
+            total += step.procedure.period();
         }
-        let Procedure::Static(control) = prepared.model.steps[0].procedure;
         let mut counts = vec![WorkCounts::default()];
         counts[0].factorizations = prepared.factorizations();
         let state = State {
             step: 0,
             step_time: 0.0,
-            increment_next: control.increment_initial.min(control.increment_max),
+            increment_next: prepared.model.steps[0].procedure.increment_first(),
             increment_anchor: 0.0,
             increment_index: 0,
             easy_increments: 0,
@@ -180,8 +178,8 @@ impl Simulation {
     /// Runs every step but the last. The ports drive the last one. Does nothing when already there.
     pub fn initialize(&mut self, watch: &mut dyn Watch) -> AdvanceOutcome {
         while !self.on_last_step() {
-            let Procedure::Static(control) = self.prepared.model.steps[self.state.step as usize].procedure;
-            match self.advance_step(control.period, watch) {
+            let period = self.prepared.model.steps[self.state.step as usize].procedure.period();
+            match self.advance_step(period, watch) {
                 AdvanceOutcome::Reached => self.begin_next_step(),
                 other => return other,
             }
@@ -207,8 +205,7 @@ impl Simulation {
     /// Total time at which the last step ends by the deck.
     pub fn time_end(&self) -> f64 {
         let last = self.step_starts.len() - 1;
-        let Procedure::Static(control) = self.prepared.model.steps[last].procedure;
-        self.step_starts[last] + control.period
+        self.step_starts[last] + self.prepared.model.steps[last].procedure.period()
     }
 
     /// Replaces the magnitude of the line behind an input and keeps its amplitude (`--set`).
@@ -271,10 +268,14 @@ impl Simulation {
     pub fn step_reports(&self) -> Vec<StepReport> {
         let report = |(i, counts): (usize, &WorkCounts)| {
             let step = &self.prepared.model.steps[i];
-            let Procedure::Static(control) = step.procedure;
             let time_reached =
-                if i == self.state.step as usize { self.time() } else { self.step_starts[i] + control.period };
-            StepReport { name: step.name.clone(), procedure: "*STATIC", time_reached, counts: counts.clone() }
+                if i == self.state.step as usize { self.time() } else { self.step_starts[i] + step.procedure.period() };
+            StepReport {
+                name: step.name.clone(),
+                procedure: step.procedure.keyword(),
+                time_reached,
+                counts: counts.clone(),
+            }
         };
         self.state.counts.iter().enumerate().map(report).collect()
     }
@@ -316,8 +317,8 @@ impl Simulation {
         self.state.step += 1;
         self.state.step_time = 0.0;
         self.state.step_start.clone_from(&self.state.coefficients);
-        let Procedure::Static(control) = self.prepared.model.steps[self.state.step as usize].procedure;
-        self.state.increment_next = control.increment_initial.min(control.increment_max);
+        let procedure = &self.prepared.model.steps[self.state.step as usize].procedure;
+        self.state.increment_next = procedure.increment_first();
         self.state.increment_anchor = 0.0;
         self.state.increment_index = 0;
         self.state.easy_increments = 0;

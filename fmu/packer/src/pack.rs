@@ -233,6 +233,9 @@ fn report(variables: &[Variable], guid: String, notes: Vec<String>, warnings: Ve
     PackReport { inputs: count(Causality::Input), outputs: count(Causality::Output), guid, notes, warnings }
 }
 
+/// Communication steps of an explicit step unless a master chooses others.
+const EXPLICIT_STEPS: f64 = 100.0;
+
 /// What the deck itself would do in its last step.
 struct Experiment {
     step: f64,
@@ -241,7 +244,9 @@ struct Experiment {
 impl Experiment {
     fn of(model: &Model) -> Self {
         let step = model.steps.last().map_or(1.0, |step| match &step.procedure {
-            Procedure::Static(control) => control.increment_initial,
+            Procedure::Static(_) | Procedure::Dynamic(_) => step.procedure.increment_first(),
+            // Stable increments are too many to be asked for one by one.
+            Procedure::Explicit(control) => control.period / EXPLICIT_STEPS,
         });
         Self { step }
     }

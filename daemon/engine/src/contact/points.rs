@@ -98,6 +98,8 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
     for (pair, index) in model.pairs.iter().zip(0u32..) {
         let surfaces = match &pair.members {
             PairMembers::Surfaces(surfaces) => surfaces,
+            // Its points are found by general contact itself.
+            PairMembers::General(_) => continue,
             PairMembers::Gaps(gaps) => {
                 points.extend(gap_points::points(&underlying, index, gaps));
                 continue;

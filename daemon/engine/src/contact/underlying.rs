@@ -176,6 +176,8 @@ fn lone_nodes(model: &Model) -> impl Iterator<Item = NodeId> + '_ {
     model.pairs.iter().flat_map(|pair| {
         let mut nodes = Vec::new();
         match &pair.members {
+            // General contact has faces only.
+            PairMembers::General(_) => {}
             PairMembers::Gaps(gaps) => nodes.extend(gaps.iter().flat_map(|gap| gap.nodes)),
             PairMembers::Surfaces(surfaces) => {
                 let mesh = &model.mesh;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use crate::law::{NormalBehavior, PressureOverclosure, Separation};
 use crate::model::{
-    AllowedOverclosure, ContactControls, ContactPair, Enforcement, Friction, Model, PairMembers, PenetrationTolerance,
-    Procedure, StepContact, SurfaceId, SurfaceInteraction, SurfaceKind,
+    AllowedOverclosure, ContactControls, ContactPair, Enforcement, ExplicitIncrements, Friction, Model, PairMembers,
+    PenetrationTolerance, Procedure, StepContact, SurfaceId, SurfaceInteraction, SurfaceKind,
 };
 
 /// Counts of nodes, elements, sets, contact pairs with their faces and nodes, and steps. Ends with a newline.
@@ -35,15 +35,23 @@ pub fn summary(model: &Model) -> String {
         line("contact pairs", "none".into());
     }
     for step in &model.steps {
-        let Procedure::Static(control) = &step.procedure;
-        let increments = if control.direct { "fixed" } else { "automatic" };
+        let fixed = match &step.procedure {
+            Procedure::Static(control) => control.direct,
+            Procedure::Dynamic(control) => control.direct,
+            Procedure::Explicit(control) => matches!(control.increments, ExplicitIncrements::Direct(_)),
+        };
+        let increments = match (step.procedure.increment_first(), fixed) {
+            (0.0, _) => "stable increments".into(),
+            (size, true) => format!("fixed increments from {size}"),
+            (size, false) => format!("automatic increments from {size}"),
+        };
         line(
             "step",
             format!(
-                "{}: *STATIC, period {}, {increments} increments from {}; {} boundary lines, {} load lines",
+                "{}: {}, period {}, {increments}; {} boundary lines, {} load lines",
                 step.name,
-                control.period,
-                control.increment_initial,
+                step.procedure.keyword(),
+                step.procedure.period(),
                 step.boundaries.len(),
                 step.loads.len()
             ),
@@ -82,6 +90,14 @@ fn describe_pair(model: &Model, pair: &ContactPair) -> String {
     let surfaces = match &pair.members {
         PairMembers::Surfaces(surfaces) => surfaces,
         PairMembers::Gaps(gaps) => return format!("{}: {} contact elements; {behavior}", pair.name, gaps.len()),
+        PairMembers::General([first, second]) => {
+            return format!(
+                "{}: general contact of {} with {}; {behavior}",
+                pair.name,
+                describe_surface(model, *first),
+                describe_surface(model, *second)
+            );
+        }
     };
     let mut text = format!(
         "{}: secondary {}; primary {}; {behavior}",

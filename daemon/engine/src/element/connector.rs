@@ -10,7 +10,7 @@ pub fn axial_stiffness(coordinates: &[[f64; 3]], section: Connector, youngs_modu
     match section {
         Connector::Bar { area } => Some(youngs_modulus * area / length(coordinates)),
         Connector::Spring { stiffness, .. } => Some(stiffness),
-        Connector::Mass { .. } | Connector::Inert => None,
+        Connector::Dashpot { .. } | Connector::Mass { .. } | Connector::RotaryInertia { .. } | Connector::Inert => None,
     }
 }
 

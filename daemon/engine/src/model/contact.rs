@@ -15,8 +15,10 @@ pub struct SurfaceInteraction {
     pub enforcement: Enforcement,
     /// `NO SEPARATION`.
     pub separation: Separation,
-    /// `*CONTACT DAMPING`.
+    /// `*CONTACT DAMPING` of Abaqus/Standard.
     pub damping: Option<ContactDamping>,
+    /// `*CONTACT DAMPING` of Abaqus/Explicit, with its default.
+    pub explicit_damping: ExplicitDamping,
     /// `*FRICTION`; steps may change it (`*CHANGE FRICTION`, see [`StepContact::frictions`]).
     pub friction: Friction,
     /// Area that each point of a node-based secondary surface stands for \[length²\], where the deck gives one. Otherwise 1, in
@@ -33,6 +35,7 @@ impl SurfaceInteraction {
             enforcement: Enforcement::Lagrange,
             separation: Separation::Allowed,
             damping: None,
+            explicit_damping: ExplicitDamping::default(),
             friction: Friction::None,
             node_area: None,
         }
@@ -113,6 +116,30 @@ pub struct ContactDamping {
     pub tangent_fraction: f64,
 }
 
+/// `*CONTACT DAMPING` in Abaqus/Explicit: acts while surfaces touch; not on hard kinematic contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExplicitDamping {
+    /// How the coefficient is found.
+    pub definition: DampingDefinition,
+    /// `TANGENT FRACTION`: tangential coefficient over normal one; 1 unless given.
+    pub tangent_fraction: f64,
+}
+
+impl Default for ExplicitDamping {
+    fn default() -> Self {
+        Self { definition: DampingDefinition::CriticalFraction(0.03), tangent_fraction: 1.0 }
+    }
+}
+
+/// `DEFINITION=` of `*CONTACT DAMPING`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DampingDefinition {
+    /// `DAMPING COEFFICIENT`: `f = mu0 A v` \[pressure·time/length\], not negative.
+    Coefficient(f64),
+    /// `CRITICAL DAMPING FRACTION`: `f = 2 xi sqrt(m k) v`, not negative; 0.03 unless given.
+    CriticalFraction(f64),
+}
+
 /// `*FRICTION`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Friction {
@@ -132,8 +159,40 @@ pub struct ContactPair {
     pub members: PairMembers,
     /// Interaction of the pair.
     pub interaction: InteractionId,
+    /// How Abaqus/Explicit treats the pair; without meaning in other decks.
+    pub explicit: ExplicitContact,
     /// Where the pair was defined, for diagnostics.
     pub place: Place,
+}
+
+/// How Abaqus/Explicit treats a pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExplicitContact {
+    /// `MECHANICAL CONSTRAINT`.
+    pub constraint: MechanicalConstraint,
+    /// `WEIGHT` after the table of defaults, in 0..=1: share of the result in which `secondary` and `primary` have these parts; the
+    /// rest has them exchanged. 1 is pure, 0.5 balanced. (The reader turns pure pairs round so that theirs is 1.)
+    pub weight: Weight,
+}
+
+/// A share in 0..=1; 1 unless given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight(pub f64);
+
+impl Default for Weight {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+/// `MECHANICAL CONSTRAINT` of a pair in Abaqus/Explicit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MechanicalConstraint {
+    /// `KINEMATIC`: predictor and corrector; the default of pairs.
+    #[default]
+    Kinematic,
+    /// `PENALTY`: always in general contact.
+    Penalty,
 }
 
 /// What meets what.
@@ -143,6 +202,9 @@ pub enum PairMembers {
     Surfaces(SurfacePair),
     /// `*GAP` over an element set: one contact point per element.
     Gaps(Vec<GapElement>),
+    /// `*CONTACT`: general contact of Abaqus/Explicit. Nodes of each surface meet faces of the other, where they belong to different
+    /// bodies; both may be the same surface.
+    General([SurfaceId; 2]),
 }
 
 impl ContactPair {
@@ -150,7 +212,7 @@ impl ContactPair {
     pub fn surfaces(&self) -> Option<&SurfacePair> {
         match &self.members {
             PairMembers::Surfaces(surfaces) => Some(surfaces),
-            PairMembers::Gaps(_) => None,
+            PairMembers::Gaps(_) | PairMembers::General(_) => None,
         }
     }
 }
@@ -261,6 +323,8 @@ pub struct ContactControls {
     pub stabilization: Option<Stabilization>,
     /// `FRICTION ONSET`.
     pub friction_onset: FrictionOnset,
+    /// `SCALE PENALTY` of Abaqus/Explicit, on default penalties only; 1 unless given.
+    pub scale_penalty: f64,
 }
 
 impl Default for ContactControls {
@@ -271,6 +335,7 @@ impl Default for ContactControls {
             modified: None,
             stabilization: None,
             friction_onset: FrictionOnset::Immediate,
+            scale_penalty: 1.0,
         }
     }
 }

@@ -41,8 +41,16 @@ pub enum ElementKind {
     Spring1,
     /// Spring between a direction of one node and a direction of another.
     Spring2,
+    /// Dashpot along the line between two nodes.
+    DashpotA,
+    /// Dashpot between a direction of a node and the ground.
+    Dashpot1,
+    /// Dashpot between a direction of one node and a direction of another.
+    Dashpot2,
     /// Point mass.
     Mass,
+    /// Rotary inertia at a node with rotations.
+    RotaryI,
     /// Gap between two nodes along a fixed direction.
     GapUni,
     /// Gap between two nodes in their distance from each other normal to an axis.
@@ -95,10 +103,26 @@ pub enum Connector {
         /// Directions (0..3) at the first and second node; SPRINGA ignores them, SPRING1 uses the first.
         directions: [u8; 2],
     },
+    /// `*DASHPOT`, linear.
+    Dashpot {
+        /// Force per velocity, not negative.
+        coefficient: f64,
+        /// Directions (0..3) at the first and second node; DASHPOTA ignores them, DASHPOT1 uses the first.
+        directions: [u8; 2],
+    },
     /// `*MASS`.
     Mass {
         /// Mass, not negative.
         mass: f64,
+        /// `ALPHA`: mass-proportional damping [1/time].
+        alpha: f64,
+    },
+    /// `*ROTARY INERTIA`: the element's node is the hidden node that carries the rotations.
+    RotaryInertia {
+        /// I11, I22, I33, I12, I13, I23 about the node, global axes [mass·length²].
+        inertia: [f64; 6],
+        /// `ALPHA`: mass-proportional damping [1/time].
+        alpha: f64,
     },
     /// GAP elements and facets of rigid bodies: neither stiffness nor mass. What they do stands in pairs and equations.
     Inert,
@@ -121,7 +145,17 @@ impl ElementKind {
     ];
 
     /// Kinds that connect nodes or give them mass.
-    pub const CONNECTORS: [Self; 5] = [Self::T3D2, Self::SpringA, Self::Spring1, Self::Spring2, Self::Mass];
+    pub const CONNECTORS: [Self; 9] = [
+        Self::T3D2,
+        Self::SpringA,
+        Self::Spring1,
+        Self::Spring2,
+        Self::DashpotA,
+        Self::Dashpot1,
+        Self::Dashpot2,
+        Self::Mass,
+        Self::RotaryI,
+    ];
 
     /// Kinds without stiffness and mass: contact elements and facets of rigid bodies.
     pub const INERT: [Self; 5] = [Self::GapUni, Self::GapCyl, Self::GapSpher, Self::R3D3, Self::R3D4];
@@ -135,10 +169,15 @@ impl ElementKind {
             Self::C3D10 => ElementShape::Tetrahedron10,
             Self::C3D15 => ElementShape::Wedge15,
             Self::C3D20 | Self::C3D20R => ElementShape::Hexahedron20,
-            Self::T3D2 | Self::SpringA | Self::Spring2 | Self::GapUni | Self::GapCyl | Self::GapSpher => {
-                ElementShape::Line2
-            }
-            Self::Spring1 | Self::Mass => ElementShape::Point1,
+            Self::T3D2
+            | Self::SpringA
+            | Self::Spring2
+            | Self::DashpotA
+            | Self::Dashpot2
+            | Self::GapUni
+            | Self::GapCyl
+            | Self::GapSpher => ElementShape::Line2,
+            Self::Spring1 | Self::Dashpot1 | Self::Mass | Self::RotaryI => ElementShape::Point1,
             Self::R3D3 => ElementShape::Triangle3,
             Self::R3D4 => ElementShape::Quadrilateral4,
         }
@@ -183,7 +222,11 @@ impl ElementKind {
             Self::SpringA => "SPRINGA",
             Self::Spring1 => "SPRING1",
             Self::Spring2 => "SPRING2",
+            Self::DashpotA => "DASHPOTA",
+            Self::Dashpot1 => "DASHPOT1",
+            Self::Dashpot2 => "DASHPOT2",
             Self::Mass => "MASS",
+            Self::RotaryI => "ROTARYI",
             Self::GapUni => "GAPUNI",
             Self::GapCyl => "GAPCYL",
             Self::GapSpher => "GAPSPHER",

@@ -37,11 +37,158 @@ pub struct LoadsRemoved {
     pub dsload: bool,
 }
 
-/// What a step does.
+/// What a step does. The steps of a deck are all of Abaqus/Standard (`*STATIC`, `*DYNAMIC`) or all of Abaqus/Explicit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Procedure {
     /// `*STATIC`.
     Static(StaticControl),
+    /// `*DYNAMIC`: implicit.
+    Dynamic(DynamicControl),
+    /// `*DYNAMIC, EXPLICIT`.
+    Explicit(ExplicitControl),
+}
+
+impl Procedure {
+    /// Length of the step \[time\].
+    pub fn period(&self) -> f64 {
+        match self {
+            Self::Static(control) => control.period,
+            Self::Dynamic(control) => control.period,
+            Self::Explicit(control) => control.period,
+        }
+    }
+
+    /// Size of the first increment \[time\]; of an explicit step with automatic increments 0: it follows from the model.
+    pub fn increment_first(&self) -> f64 {
+        match self {
+            Self::Static(control) => control.increment_initial.min(control.increment_max),
+            Self::Dynamic(control) => control.increment_initial.min(control.increment_max),
+            Self::Explicit(control) => match control.increments {
+                ExplicitIncrements::Direct(size) => size,
+                ExplicitIncrements::Automatic { .. } => 0.0,
+            },
+        }
+    }
+
+    /// How implicit increments are chosen; none for an explicit step.
+    pub fn implicit_increments(&self) -> Option<StaticControl> {
+        match *self {
+            Self::Static(control) => Some(control),
+            Self::Dynamic(DynamicControl {
+                increment_initial, period, increment_min, increment_max, direct, ..
+            }) => Some(StaticControl { increment_initial, period, increment_min, increment_max, direct }),
+            Self::Explicit(_) => None,
+        }
+    }
+
+    /// The keyword.
+    pub fn keyword(&self) -> &'static str {
+        match self {
+            Self::Static(_) => "*STATIC",
+            Self::Dynamic(_) => "*DYNAMIC",
+            Self::Explicit(_) => "*DYNAMIC, EXPLICIT",
+        }
+    }
+
+    /// Whether inertia takes part.
+    pub fn is_dynamic(&self) -> bool {
+        !matches!(self, Self::Static(_))
+    }
+}
+
+/// `*DYNAMIC`: parameters and data line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DynamicControl {
+    /// First (or, with DIRECT, every) increment \[time\]: the base of automatic sizes, which are base · 2^k.
+    pub increment_initial: f64,
+    /// Length of the step \[time\].
+    pub period: f64,
+    /// Smallest increment before the step stops; default 1e-5 of the period (or the first increment, if smaller).
+    pub increment_min: f64,
+    /// Largest increment; default the period.
+    pub increment_max: f64,
+    /// `DIRECT`: increments are fixed, no cutback.
+    pub direct: bool,
+    /// `ALPHA` of the operator, -1/3..=0; -0.05 unless given.
+    pub alpha: f64,
+    /// What bounds the half-increment residual of automatic increments.
+    pub half_increment: HalfIncrement,
+    /// `INITIAL`: whether accelerations at the start of the step are computed from equilibrium; they are unless `INITIAL=NO`.
+    pub initial_accelerations: bool,
+    /// Mass matrix.
+    pub mass: MassMatrix,
+}
+
+/// What bounds the half-increment residual of automatic implicit increments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HalfIncrement {
+    /// `NOHAF`: nothing, increments grow to the largest one.
+    Unchecked,
+    /// `HAFTOL`: largest residual force at a node \[force\].
+    Force(f64),
+    /// Neither given: this factor on the largest force so far (external, inertia, contact).
+    Relative(f64),
+}
+
+/// How the mass of elements is attached to their nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MassMatrix {
+    /// First-order elements lumped, second-order elements consistent: what Abaqus/Standard does.
+    #[default]
+    ByOrder,
+    /// `MASS=LUMPED` (our option).
+    Lumped,
+    /// `MASS=CONSISTENT` (our option); what CalculiX does.
+    Consistent,
+}
+
+/// `*DYNAMIC, EXPLICIT`: parameters, data line, `*BULK VISCOSITY`, `*FIXED MASS SCALING`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExplicitControl {
+    /// Length of the step \[time\], positive.
+    pub period: f64,
+    /// Sizes of increments.
+    pub increments: ExplicitIncrements,
+    /// Largest increment \[time\]; none: the stable one.
+    pub increment_max: Option<f64>,
+    /// Linear and quadratic bulk viscosity; 0.06 and 1.2 unless given.
+    pub bulk_viscosity: [f64; 2],
+    /// `*FIXED MASS SCALING`, in order; later lines act on what earlier ones leave.
+    pub mass_scaling: Vec<MassScaling>,
+}
+
+/// Sizes of explicit increments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ExplicitIncrements {
+    /// The stable increment times a factor (`SCALE FACTOR`, 1 unless given).
+    Automatic {
+        /// The factor, in 0..=1.
+        scale: f64,
+    },
+    /// `DIRECT USER CONTROL`: this size \[time\].
+    Direct(f64),
+}
+
+/// `*FIXED MASS SCALING`, at the start of the step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MassScaling {
+    /// Elements; none: all.
+    pub element_set: Option<SetId>,
+    /// How much.
+    pub kind: MassScalingKind,
+}
+
+/// How masses are scaled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MassScalingKind {
+    /// `FACTOR`: by a factor, positive.
+    Factor(f64),
+    /// `DT` with `TYPE=UNIFORM`: all by one factor, so that the smallest stable increment becomes this \[time\].
+    Uniform(f64),
+    /// `DT` with `TYPE=BELOW MIN`: each element below this stable increment up to it \[time\].
+    BelowMin(f64),
+    /// `DT` with `TYPE=SET EQUAL DT`: each element to it \[time\].
+    SetEqual(f64),
 }
 
 /// Data line of `*STATIC`.
@@ -81,12 +228,26 @@ pub struct Boundary {
     pub nodes: Vec<NodeId>,
     /// Direction, 0..3.
     pub direction: u8,
-    /// Prescribed displacement \[length\] at amplitude 1.
+    /// What `magnitude` is.
+    pub kind: BoundaryKind,
+    /// Prescribed displacement \[length\], velocity or acceleration at amplitude 1.
     pub magnitude: f64,
-    /// Amplitude, if any; otherwise the step's ramp.
+    /// Amplitude, if any; otherwise the step's ramp (velocities and accelerations: at once).
     pub amplitude: Option<AmplitudeId>,
     /// The line.
     pub place: Place,
+}
+
+/// `TYPE=` of `*BOUNDARY`: what is prescribed. Velocities and accelerations only in dynamic steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BoundaryKind {
+    /// A displacement.
+    #[default]
+    Displacement,
+    /// A velocity: the displacement is its integral from where the direction stands at the start of the step.
+    Velocity,
+    /// An acceleration: integrated twice, from displacement and velocity at the start of the step.
+    Acceleration,
 }
 
 /// One load data line.

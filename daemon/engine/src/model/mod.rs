@@ -52,6 +52,8 @@ pub struct Model {
     /// Boundary conditions of the model part (before the first step): all values are zero. Lines that name single
     /// nodes are joined per direction; region and place are those of the first.
     pub initial_boundaries: Vec<Boundary>,
+    /// `*INITIAL CONDITIONS, TYPE=VELOCITY`, in order; a later line replaces an earlier one at the same node and direction.
+    pub initial_velocities: Vec<InitialVelocity>,
     /// Steps in order. Never empty in a validated model.
     pub steps: Vec<Step>,
 }
@@ -65,8 +67,30 @@ pub struct Material {
     pub youngs_modulus: f64,
     /// Poisson's ratio, in (-1, 0.5).
     pub poissons_ratio: f64,
-    /// Mass density [mass/length³]; needed for GRAV only.
+    /// Mass density [mass/length³], positive; needed for GRAV and in dynamic steps.
     pub density: Option<f64>,
+    /// `*DAMPING`: zero unless given.
+    pub damping: Rayleigh,
+}
+
+/// Rayleigh damping: the damping matrix is `alpha M + beta K`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rayleigh {
+    /// Mass-proportional factor [1/time], not negative.
+    pub alpha: f64,
+    /// Stiffness-proportional factor \[time\], not negative.
+    pub beta: f64,
+}
+
+/// Velocity at the start of the analysis: that of the first dynamic step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InitialVelocity {
+    /// Node.
+    pub node: NodeId,
+    /// Direction, 0..3 (of a hidden node: rotation).
+    pub direction: u8,
+    /// Velocity [length/time].
+    pub value: f64,
 }
 
 /// `*SOLID SECTION`.
@@ -127,6 +151,23 @@ pub struct Amplitude {
     pub clock: AmplitudeClock,
     /// (time, factor), times strictly increasing, at least one point.
     pub points: Vec<(f64, f64)>,
+}
+
+impl Model {
+    /// Whether the deck is one of Abaqus/Explicit.
+    pub fn is_explicit(&self) -> bool {
+        matches!(self.steps.first().map(|step| &step.procedure), Some(Procedure::Explicit(_)))
+    }
+
+    /// Whether any step is static.
+    pub fn has_statics(&self) -> bool {
+        self.steps.iter().any(|step| !step.procedure.is_dynamic())
+    }
+
+    /// Whether any step is dynamic.
+    pub fn has_dynamics(&self) -> bool {
+        self.steps.iter().any(|step| step.procedure.is_dynamic())
+    }
 }
 
 impl Amplitude {

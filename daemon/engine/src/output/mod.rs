@@ -38,7 +38,7 @@ pub use crate::restart::Standing;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::model::{ElementId, Model, Procedure, RestartRequest, Step};
+use crate::model::{ElementId, Model, RestartRequest, Step};
 use crate::simulation::{
     ContactPointResult, HistoryRow, IncrementReport, NodalSolution, PreparedModel, Simulation, Watch,
 };
@@ -184,7 +184,7 @@ impl Watch for ResultWriter {
         }
         let last = step_of(self.prepared.model(), report).is_some_and(|step| {
             // The clock of a step is a sum of increments; its end is hit to rounding.
-            report.step_time >= period(&step.procedure) * (1.0 - 1e-9)
+            report.step_time >= step.procedure.period() * (1.0 - 1e-9)
         });
         let moment = if last { Moment::LastOfStep } else { Moment::Within };
         self.unfinished = (!last).then(|| report.clone());
@@ -202,13 +202,6 @@ impl Watch for ResultWriter {
 /// The step that an increment belongs to.
 fn step_of<'a>(model: &'a Model, increment: &IncrementReport) -> Option<&'a Step> {
     model.steps.get((increment.step as usize).checked_sub(1)?)
-}
-
-/// Length of a step \[time\].
-fn period(procedure: &Procedure) -> f64 {
-    match procedure {
-        Procedure::Static(control) => control.period,
-    }
 }
 
 /// What an increment has to say to the files with tables and records.

@@ -83,7 +83,11 @@ mod tests {
         model.mesh.node_labels = vec![10, 20, 30];
         let set = |nodes: &[u32]| NodeSet { name: "N".into(), nodes: nodes.iter().map(|&n| NodeId(n)).collect() };
         model.mesh.node_sets = vec![set(&[0, 1]), set(&[1, 2])];
-        let solution = NodalSolution { displacement: vec![[0.5, 0.25, -1.0]; 3], reaction: vec![[0.0, 0.0, 8.0]; 3] };
+        let solution = NodalSolution {
+            displacement: vec![[0.5, 0.25, -1.0]; 3],
+            reaction: vec![[0.0, 0.0, 8.0]; 3],
+            ..NodalSolution::default()
+        };
         let mut table = NodeTable::create(directory.path(), "job").unwrap();
         let increment = IncrementReport { step: 1, increment: 2, time: 0.5, ..Default::default() };
         for _ in 0..2 {
@@ -114,6 +118,7 @@ mod tests {
         let solution = NodalSolution {
             displacement: vec![[0.0; 3], [0.0, 0.5, 0.25]],
             reaction: vec![[0.0; 3], [-4.0, 0.0, 0.0]],
+            ..NodalSolution::default()
         };
         let mut table = NodeTable::create(directory.path(), "job").unwrap();
         let increment = IncrementReport { step: 1, increment: 1, ..Default::default() };

@@ -10,7 +10,7 @@ use super::printed_contact::contact_tables;
 use super::printed_elements::element_tables;
 use super::printed_table::{Entity, Table};
 use super::status_log::status_changes;
-use super::{Increment, NodalFields, period, step_of};
+use super::{Increment, NodalFields, step_of};
 use crate::model::{Model, NodeId, NodeRequest, Procedure, Step, Totals};
 use crate::simulation::{HistoryRow, IncrementReport, PreparedModel};
 
@@ -163,6 +163,8 @@ fn title(prepared: &PreparedModel) -> String {
 fn step_heading(text: &mut String, step: &Step, increment: &IncrementReport) {
     let procedure = match step.procedure {
         Procedure::Static(_) => "STATIC ANALYSIS",
+        Procedure::Dynamic(_) => "DYNAMIC ANALYSIS",
+        Procedure::Explicit(_) => "EXPLICIT DYNAMIC ANALYSIS",
     };
     let spaced: String = procedure.chars().flat_map(|c| [c, ' ']).collect();
     let _ = writeln!(text, "\n\n                    S T E P   {:>5}     {spaced}\n\n   {}", increment.step, step.name);
@@ -173,7 +175,7 @@ fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
     let pair = |text: &mut String, a: &str, x: f64, b: &str, y: f64| {
         let _ = writeln!(text, " {a:<26}{},  {b:<28}{}", printed(x), printed(y));
     };
-    let fraction = increment.step_time / period(&step.procedure);
+    let fraction = increment.step_time / step.procedure.period();
     pair(text, "TIME INCREMENT COMPLETED", increment.increment_size, "FRACTION OF STEP COMPLETED", fraction);
     pair(text, "STEP TIME COMPLETED", increment.step_time, "TOTAL TIME COMPLETED", increment.time);
 }

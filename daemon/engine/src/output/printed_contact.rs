@@ -113,7 +113,7 @@ pub(super) fn gap_table(
 pub(super) fn gap_labels<'a>(model: &'a Model, pair: &'a ContactPair) -> impl Iterator<Item = u32> + 'a {
     let gaps = match &pair.members {
         crate::model::PairMembers::Gaps(gaps) => gaps.as_slice(),
-        crate::model::PairMembers::Surfaces(_) => &[],
+        crate::model::PairMembers::Surfaces(_) | crate::model::PairMembers::General(_) => &[],
     };
     gaps.iter().map(|gap| model.mesh.element_labels[gap.element.index()])
 }

@@ -103,6 +103,9 @@ fn start(model: &Model, report: &IncrementReport) -> Record {
         // Static with automatic, or with fixed increments.
         Some(Procedure::Static(control)) if control.direct => 2,
         Some(Procedure::Static(_)) | None => 1,
+        Some(Procedure::Dynamic(control)) if control.direct => 12,
+        Some(Procedure::Dynamic(_)) => 11,
+        Some(Procedure::Explicit(_)) => 17,
     };
     Record::new(2000)
         .reals(&[report.time, report.step_time, 0.0, 0.0])

@@ -39,9 +39,9 @@ pub struct IncrementCounts {
 impl Simulation {
     /// Where the present step stands at a step time.
     pub(crate) fn moment(prepared: &crate::prepared::PreparedModel, step: usize, time: f64) -> Moment<'_> {
-        let crate::model::Procedure::Static(control) = prepared.model.steps[step].procedure;
-        let progress = (time / control.period).min(1.0);
-        Moment { model: &prepared.model, plan: &prepared.rows, step, progress, period: control.period }
+        let period = prepared.model.steps[step].procedure.period();
+        let progress = (time / period).min(1.0);
+        Moment { model: &prepared.model, plan: &prepared.rows, step, progress, period }
     }
 
     /// Finds equilibrium for the free overclosures and loads in the work space. `size` is the increment \[time\].

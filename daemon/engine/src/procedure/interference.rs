@@ -3,16 +3,16 @@
 //! The overclosure that every law sees is `h − v(t)`. Without an amplitude `v` falls linearly from its value at the start of
 //! the step to zero at its end; with one it is the value times the amplitude. Later steps keep the last value.
 
-use crate::model::{AllowedOverclosure, AmplitudeClock, Interference, Model, Procedure};
+use crate::model::{AllowedOverclosure, AmplitudeClock, Interference, Model};
 use crate::procedure::rows::RowPlan;
 
 /// Factor on an allowed overclosure in a step, at a time of that step that began at a total time.
 fn factor(model: &Model, interference: Interference, step: usize, step_start: f64, time: f64) -> f64 {
     let stated = interference.step as usize;
-    let Procedure::Static(control) = &model.steps[stated].procedure;
-    let time_stated = if step == stated { time.min(control.period) } else { control.period };
+    let period = model.steps[stated].procedure.period();
+    let time_stated = if step == stated { time.min(period) } else { period };
     let Some(amplitude) = interference.amplitude else {
-        return 1.0 - time_stated / control.period;
+        return 1.0 - time_stated / period;
     };
     let amplitude = &model.amplitudes[amplitude.index()];
     amplitude.evaluate(match amplitude.clock {

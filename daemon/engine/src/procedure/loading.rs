@@ -7,7 +7,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::diagnostic::Diagnostic;
-use crate::model::{AmplitudeClock, AmplitudeId, Boundary, LoadKind, Model, NodeId, Procedure};
+use crate::model::{AmplitudeClock, AmplitudeId, Boundary, LoadKind, Model, NodeId};
 use crate::port::{Port, Quantity};
 use crate::solve::columns::{Column, force_pattern, merge};
 
@@ -234,13 +234,13 @@ impl Loading {
         let mut ends: Vec<Vec<f64>> = Vec::with_capacity(self.courses.len());
         let mut begun = 0.0;
         for (s, courses) in self.courses.iter().enumerate() {
-            let Procedure::Static(control) = &model.steps[s].procedure;
+            let period = model.steps[s].procedure.period();
             let value = |(j, course): (usize, &Course)| {
                 let start = ends.last().map_or(0.0, |last| last[j]);
-                value_at(model, *course, s, start, begun, control.period)
+                value_at(model, *course, s, start, begun, period)
             };
             ends.push(courses.iter().enumerate().map(value).collect());
-            begun += control.period;
+            begun += period;
         }
         ends
     }
@@ -305,13 +305,13 @@ impl Owners {
 
 /// Value of a column at a moment of a step.
 pub fn value_at(model: &Model, course: Course, step: usize, start_value: f64, step_start: f64, step_time: f64) -> f64 {
-    let Procedure::Static(control) = &model.steps[step].procedure;
+    let period = model.steps[step].procedure.period();
     // Beyond its period a step stands still.
-    let time = step_time.min(control.period);
+    let time = step_time.min(period);
     match course {
         Course::Hold => start_value,
-        Course::Ramp { magnitude } if time >= control.period => magnitude,
-        Course::Ramp { magnitude } => start_value + (magnitude - start_value) * (time / control.period),
+        Course::Ramp { magnitude } if time >= period => magnitude,
+        Course::Ramp { magnitude } => start_value + (magnitude - start_value) * (time / period),
         Course::Curve { magnitude, amplitude } => {
             let amplitude = &model.amplitudes[amplitude.index()];
             let clock = match amplitude.clock {

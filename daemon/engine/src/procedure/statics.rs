@@ -1,6 +1,6 @@
 //! Static increments: fixed or automatic, cut back when no equilibrium is found.
 
-use crate::model::{Procedure, StaticControl};
+use crate::model::StaticControl;
 use crate::procedure::enforcement::IncrementCounts;
 use crate::procedure::failure::Failure;
 use crate::procedure::interference;
@@ -34,19 +34,25 @@ impl Simulation {
     pub(crate) fn advance_step(&mut self, target: f64, watch: &mut dyn Watch) -> AdvanceOutcome {
         let prepared = self.prepared.clone();
         let step = self.state.step as usize;
-        let Procedure::Static(control) = prepared.model.steps[step].procedure;
+        let Some(control) = prepared.model.steps[step].procedure.implicit_increments() else {
+            return AdvanceOutcome::Stopped { reason: "explicit steps are not solved yet".into() };
+        };
         let tolerance = TIME_TOLERANCE * control.period.max(target.abs());
         let interval = self.begin_interval(target, tolerance);
-        let outcome = self.advance_interval(&interval, watch);
+        let outcome = self.advance_interval(&interval, control, watch);
         // The list is used again: an increment allocates nothing.
         self.work.driven = interval.driven;
         outcome
     }
 
-    fn advance_interval(&mut self, interval: &Interval, watch: &mut dyn Watch) -> AdvanceOutcome {
+    fn advance_interval(
+        &mut self,
+        interval: &Interval,
+        control: StaticControl,
+        watch: &mut dyn Watch,
+    ) -> AdvanceOutcome {
         let prepared = self.prepared.clone();
         let step = self.state.step as usize;
-        let Procedure::Static(control) = prepared.model.steps[step].procedure;
         let (target, tolerance) = (interval.end, interval.tolerance);
         let limit = prepared.model.steps[step].increments_max;
         let mut done = 0;

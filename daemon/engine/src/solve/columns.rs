@@ -77,8 +77,10 @@ fn nodal_masses(model: &Model, e: ElementId) -> Vec<f64> {
             volumes.into_iter().map(|volume| density * volume).collect()
         }
         Some(Connector::Bar { area }) => vec![0.5 * density() * area * connector::length(&coordinates); 2],
-        Some(Connector::Mass { mass }) => vec![*mass],
-        Some(Connector::Spring { .. } | Connector::Inert) => Vec::new(),
+        Some(Connector::Mass { mass, .. }) => vec![*mass],
+        Some(
+            Connector::Spring { .. } | Connector::Dashpot { .. } | Connector::RotaryInertia { .. } | Connector::Inert,
+        ) => Vec::new(),
     }
 }
 

@@ -55,7 +55,7 @@ fn connectors_are_read_with_their_sections() {
         spring(100.0, [0, 0]),
         spring(200.0, [2, 0]),
         spring(300.0, [0, 1]),
-        Connector::Mass { mass: 4.0 },
+        Connector::Mass { mass: 4.0, alpha: 0.0 },
     ];
     assert_eq!((2..7).map(|e| mesh.connectors[&ElementId(e)]).collect::<Vec<_>>(), expected);
     assert_eq!(mesh.connectors.len(), 5);

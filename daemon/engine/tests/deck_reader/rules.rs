@@ -26,7 +26,7 @@ fn the_base_deck_is_read_without_findings() {
     assert_eq!(model.initial_boundaries.len(), 5);
     let step = &model.steps[0];
     assert_eq!((step.name.as_str(), step.increments_max), ("Step-1", 100));
-    let Procedure::Static(control) = step.procedure.clone();
+    let control = step.procedure.implicit_increments().unwrap();
     assert_eq!(
         (control.increment_initial, control.period, control.increment_max, control.direct),
         (0.1, 1.0, 1.0, false)
@@ -467,7 +467,7 @@ fn steps_are_checked() {
     warns(&with("*STEP\n", "*STEP, NLGEOM\n"), "*STEP", "small displacements");
     assert!(read(&with("*STEP\n", "*STEP, NLGEOM=NO\nsome title\n")).diagnostics.is_empty());
     let control = |lines: &str| {
-        let Procedure::Static(control) = model(&with("*STATIC\n0.1, 1.\n", lines)).steps[0].procedure.clone();
+        let control = model(&with("*STATIC\n0.1, 1.\n", lines)).steps[0].procedure.implicit_increments().unwrap();
         (control.increment_initial, control.period, control.increment_min, control.increment_max, control.direct)
     };
     assert_eq!(control("*STATIC\n"), (1.0, 1.0, 1e-5, 1.0, false));

@@ -30,6 +30,7 @@ impl StatedControls {
             modified: own.modified.or(all.modified),
             stabilization: own.stabilization.or(all.stabilization),
             friction_onset: own.friction_onset.or(all.friction_onset).unwrap_or(default.friction_onset),
+            scale_penalty: default.scale_penalty,
         }
     }
 

@@ -92,6 +92,7 @@ impl Builder<'_> {
         let gaps: Vec<Option<GapElement>> = elements.iter().map(|&e| self.gap_element(e, &given, card.at)).collect();
         let gaps = gaps.into_iter().collect::<Option<Vec<GapElement>>>()?;
         let pair = ContactPair {
+            explicit: Default::default(),
             name,
             members: PairMembers::Gaps(gaps),
             interaction: interaction?,

@@ -78,6 +78,7 @@ impl Builder<'_> {
             }
             let (youngs_modulus, poissons_ratio) = complete.unwrap_or((1.0, 0.0));
             self.model.materials.push(Material {
+                damping: Default::default(),
                 name: draft.name,
                 youngs_modulus,
                 poissons_ratio,

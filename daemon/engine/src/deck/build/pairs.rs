@@ -81,7 +81,10 @@ impl Builder<'_> {
                     if !card.parameters.has("SMALL SLIDING") {
                         self.finite_sliding.insert(self.model.pairs.len());
                     }
-                    self.push_pair(ContactPair { name, members, interaction, place }, row.at);
+                    self.push_pair(
+                        ContactPair { name, members, interaction, explicit: Default::default(), place },
+                        row.at,
+                    );
                 } else {
                     self.faulty_pairs.insert((secondary, primary));
                 }
@@ -257,6 +260,7 @@ impl Builder<'_> {
     fn pair_keyword(&self, pair: &ContactPair) -> &'static str {
         match pair.members {
             PairMembers::Surfaces(_) => PAIR,
+            PairMembers::General(_) => "*CONTACT",
             PairMembers::Gaps(_) => self.interaction_lines[pair.interaction.index()].keyword,
         }
     }

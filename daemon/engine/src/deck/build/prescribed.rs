@@ -84,6 +84,7 @@ impl Builder<'_> {
             }
             for (direction, nodes) in along.into_iter().filter(|(_, nodes)| !nodes.is_empty()) {
                 let boundary = Boundary {
+                    kind: Default::default(),
                     region: region.region.clone(),
                     region_name: region.name.clone(),
                     nodes,

@@ -29,6 +29,10 @@ fn section_of(kind: ElementKind) -> (&'static str, &'static str) {
             (SPRING, "give their set a *SPRING with a stiffness")
         }
         ElementKind::Mass => (MASS, "give their set a *MASS"),
+        ElementKind::DashpotA | ElementKind::Dashpot1 | ElementKind::Dashpot2 => {
+            ("*DASHPOT", "give their set a *DASHPOT")
+        }
+        ElementKind::RotaryI => ("*ROTARY INERTIA", "give their set a *ROTARY INERTIA"),
         kind if kind.is_gap() => ("*GAP", "give their set a *GAP"),
         kind if kind.is_facet() => ("*RIGID BODY", "name their set in a *RIGID BODY"),
         _ => (SOLID, "give their set a *SOLID SECTION with a material"),
@@ -209,7 +213,7 @@ fn not_negative(row: &Row<'_>, what: &str, report: &mut Report) -> Option<f64> {
 fn mass(card: &Card, report: &mut Report) -> Option<Connector> {
     let row = card.single_row("mass", report)?;
     row.at_most(1, report);
-    Some(Connector::Mass { mass: not_negative(&row, "mass", report)? })
+    Some(Connector::Mass { mass: not_negative(&row, "mass", report)?, alpha: 0.0 })
 }
 
 /// A line of directions (none for SPRINGA, where it is blank), then the stiffness.
