@@ -2,6 +2,7 @@
 
 use crate::model::Enforcement;
 use crate::simulation::Simulation;
+use crate::state::Motion;
 
 /// Unbalanced force, relative to the forces at work, that rounding explains.
 const BALANCE_TOLERANCE: f64 = 1e-8;
@@ -11,6 +12,8 @@ const HARD_TOLERANCE: f64 = 1e-8;
 const PLACE_ROUNDING: f64 = 1e-13;
 /// Part of a tolerance of the deck by which rounding may exceed it.
 const TOLERATED: f64 = 1e-9;
+/// Change of ETOTAL, relative to the largest energy so far, beyond which a dynamic solution is not to be trusted.
+const ENERGY_DRIFT_MAX: f64 = 0.05;
 /// Overclosure, relative to the face, beyond which a softened law is outside small sliding (HCRIT: half a face).
 const OVERCLOSURE_MAX: f64 = 0.5;
 
@@ -18,7 +21,10 @@ impl Simulation {
     /// What the audit of the present solution found; empty when clean.
     pub fn audit(&self) -> Vec<String> {
         let mut findings = Vec::new();
-        self.audit_balance(&mut findings);
+        match &self.state.motion {
+            None => self.audit_balance(&mut findings),
+            Some(motion) => audit_energy(motion, &mut findings),
+        }
         self.audit_points(&mut findings);
         findings
     }
@@ -30,8 +36,8 @@ impl Simulation {
         // Forces at work before anything cancels: what prescribed displacements and loads would do alone.
         let mut scale: f64 = forces.iter().map(|f| f.abs()).sum();
         for (column, a) in coefficients.iter().enumerate() {
-            scale += match prepared.condensed.is_displacement[column] {
-                true => prepared.condensed.unrelieved[column] * a.abs(),
+            scale += match prepared.statics().condensed.is_displacement[column] {
+                true => prepared.statics().condensed.unrelieved[column] * a.abs(),
                 false => prepared.load_totals[column].iter().map(|t| (t * a).abs()).sum(),
             };
         }
@@ -40,7 +46,7 @@ impl Simulation {
                 continue;
             }
             let Some(column) = prepared.outputs.all_reactions[d] else { continue };
-            let reaction = prepared.condensed.conjugate(column, self.state.response());
+            let reaction = prepared.statics().condensed.conjugate(column, self.state.response());
             let load: f64 = prepared.load_totals.iter().zip(coefficients).map(|(total, a)| total[d] * a).sum();
             if (reaction + load).abs() > BALANCE_TOLERANCE * scale {
                 findings.push(format!(
@@ -59,7 +65,7 @@ impl Simulation {
         let scale = self.work.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
         // Of coordinates, and of motions that go a long way.
         let motion = self.state.motions.iter().fold(0.0f64, |m, a| m.max(a.abs()));
-        let rounding = PLACE_ROUNDING * prepared.contact.extent.max(motion);
+        let rounding = PLACE_ROUNDING * prepared.extent.max(motion);
         let force_scale = self.state.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
         let (mut tension, mut overlap, mut deep) = (Vec::new(), Vec::new(), Vec::new());
         for (i, point) in prepared.points.iter().enumerate() {
@@ -96,5 +102,16 @@ impl Simulation {
         report("tension where the law allows none", tension);
         report("overclosure of hard contact", overlap);
         report("overclosure of more than half a primary face, which small sliding does not cover", deep);
+    }
+}
+
+/// ETOTAL stays what it was.
+fn audit_energy(motion: &Motion, findings: &mut Vec<String>) {
+    let drift = motion.energies.total - motion.energy_start;
+    if drift.abs() > ENERGY_DRIFT_MAX * motion.energy_max {
+        findings.push(format!(
+            "energy balance: ETOTAL has changed by {drift:e}, the largest energy is {:e}: increments are too large for this motion",
+            motion.energy_max
+        ));
     }
 }

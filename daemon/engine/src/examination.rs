@@ -102,7 +102,10 @@ fn unheld(
 ) -> (Vec<Diagnostic>, Vec<Diagnostic>) {
     let (mut errors, mut warnings) = (Vec::new(), Vec::new());
     let loads = floating.loads(&loading.columns, bodies, motions);
-    let ends = loading.step_ends(model);
+    // In a dynamic step a body that nothing holds moves.
+    let statics: Vec<bool> = model.steps.iter().map(|step| !step.procedure.is_dynamic()).collect();
+    let ends: Vec<Vec<f64>> =
+        loading.step_ends(model).into_iter().zip(&statics).filter(|(_, held)| **held).map(|(end, _)| end).collect();
     // What the lines of the deck do together at the end of a step counts: one may balance another.
     let acts = |z: usize| {
         let combination = floating.loose.column(z);
@@ -133,7 +136,7 @@ fn unheld(
         });
         if acts(z) {
             found[at].1.push(said);
-        } else if matches!(sample, Sample::Element(_)) {
+        } else if !ends.is_empty() && matches!(sample, Sample::Element(_)) {
             // A lone node that nothing loads and nothing resists just stays.
             found[at].2.push(said);
         }

@@ -19,6 +19,14 @@ impl Simulation {
     /// Displacements and reactions of all nodes: one backward solve per body.
     pub fn recover(&self) -> NodalSolution {
         let prepared = &self.prepared;
+        if let Some(motion) = &self.state.motion {
+            return NodalSolution {
+                displacement: motion.displacement.clone(),
+                velocity: motion.velocity.clone(),
+                acceleration: motion.acceleration.clone(),
+                reaction: motion.reaction.clone(),
+            };
+        }
         let (coefficients, forces) = (&self.state.coefficients, &self.state.forces);
         let mut displacement = vec![[0.0; 3]; prepared.model.mesh.nodes.len()];
         for (column, &a) in prepared.loading.columns.iter().zip(coefficients) {
@@ -30,7 +38,7 @@ impl Simulation {
         }
         let budget = Budget::default();
         let context = prepared.context(&budget);
-        for (body, elements) in prepared.bodies.iter().zip(&prepared.numbering.elements) {
+        for (body, elements) in prepared.statics().bodies.iter().zip(&prepared.numbering.elements) {
             let unknowns = body.recover(&context, elements, coefficients, forces);
             for (node, directions) in body.nodes.iter().zip(&body.unknowns) {
                 for (u, &unknown) in displacement[node.index()].iter_mut().zip(directions) {

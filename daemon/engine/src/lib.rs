@@ -14,10 +14,12 @@ pub mod simulation;
 
 mod audit;
 mod cache;
+mod condensation;
 mod examination;
 mod fields;
 mod fingerprint;
 mod kept;
+mod nodal;
 mod observe;
 mod outputs;
 mod port_config;

@@ -1,8 +1,8 @@
 //! Results of the present state: contact points, pair totals, energies, output ports, history.
 
 use crate::element::quad::cross;
-use crate::model::Enforcement;
 use crate::outputs::Source;
+use crate::procedure::interference;
 use crate::procedure::rows::Moment;
 use crate::simulation::{ContactPointResult, ContactStatus, Energies, HistoryRow, PairTotals, Simulation, WorkCounts};
 
@@ -10,18 +10,43 @@ impl Simulation {
     /// Computes overclosures and results from the state alone, as after a restore.
     pub(crate) fn recompute(&mut self) {
         let prepared = self.prepared.clone();
+        if self.state.motion.is_some() {
+            self.moved_overclosures();
+            self.refresh();
+            return;
+        }
         let coefficients = std::mem::take(&mut self.state.coefficients);
         self.free_overclosures(&coefficients, self.state.step_time);
         self.state.coefficients = coefficients;
         let work = &mut self.work;
-        prepared.contact.relief(&self.state.forces, &mut work.relief);
-        prepared.contact.overclosures(&work.free, &work.relief, &self.state.motions, &mut work.overclosures);
+        prepared.statics().contact.relief(&self.state.forces, &mut work.relief);
+        prepared.statics().contact.overclosures(&work.free, &work.relief, &self.state.motions, &mut work.overclosures);
         let moment = Self::moment(&prepared, self.state.step as usize, self.state.step_time);
         let begun = self.state.counts.iter().any(|c| c.increments > 0);
         for i in (0..prepared.points.len()).filter(|&i| begun && moment.penetration_max(i).is_some()) {
             self.work.overclosures[i] = self.state.penetrations[i];
         }
         self.refresh();
+    }
+
+    /// Overclosures under the displacements of a dynamic step, into the work space.
+    pub(crate) fn moved_overclosures(&mut self) {
+        let prepared = self.prepared.clone();
+        let (nodal, step) = (prepared.nodal(), self.state.step as usize);
+        let Some(motion) = &self.state.motion else { return };
+        let work = &mut self.work;
+        work.overclosures.clear();
+        let of_row = |row: usize| nodal.initial[row] - motion.offsets[row] + nodal.along(row, &motion.displacement);
+        work.overclosures.extend((0..nodal.rows()).map(of_row));
+        interference::allow(
+            &prepared.model,
+            &prepared.rows,
+            &nodal.initial,
+            step,
+            self.step_starts[step],
+            self.state.step_time,
+            &mut work.overclosures,
+        );
     }
 
     /// Status of a contact point.
@@ -45,7 +70,7 @@ impl Simulation {
         for (i, point) in prepared.points.iter().enumerate() {
             let state = &self.state;
             // A closed hard point is held at zero by its multiplier; what remains is rounding.
-            let held = state.closed[i] && moment.enforcement(i) == Some(Enforcement::Lagrange);
+            let held = state.closed[i] && moment.is_exact(i);
             let result = ContactPointResult {
                 status: self.status(&moment, i),
                 clearance: if held { 0.0 } else { -self.work.overclosures[i] },
@@ -91,11 +116,15 @@ impl Simulation {
         for pair in &mut derived.pairs {
             pair.force_magnitude = pair.force.iter().map(|f| f * f).sum::<f64>().sqrt();
         }
-        let strain = prepared.condensed.strain_energy(&state.coefficients, &state.forces, &derived.relief);
+        if let Some(motion) = &state.motion {
+            derived.energies = motion.energies;
+            return;
+        }
+        let strain = prepared.statics().condensed.strain_energy(&state.coefficients, &state.forces, &derived.relief);
         // Multipliers store nothing: what they do along an overclosure is not given back.
         self.work.rows.clear();
         self.work.rows.extend((0..points).map(|i| moment.normal_row(state, i, state.closed[i], 0.0)));
-        let contact = prepared.contact.energy(&self.work.rows, &derived.overclosures, &state.closed);
+        let contact = prepared.statics().contact.energy(&self.work.rows, &derived.overclosures, &state.closed);
         derived.energies = Energies {
             strain,
             contact,
@@ -154,7 +183,13 @@ impl Simulation {
 
     /// Generalised value of a column under the present state; 0 where there is none.
     pub(crate) fn generalised(&self, column: Option<usize>) -> f64 {
-        column.map_or(0.0, |c| self.prepared.condensed.conjugate(c, self.state.response()))
+        let Some(c) = column else { return 0.0 };
+        let Some(motion) = &self.state.motion else {
+            return self.prepared.statics().condensed.conjugate(c, self.state.response());
+        };
+        let column = &self.prepared.columns[c];
+        let values = if column.is_displacement() { &motion.reaction } else { &motion.displacement };
+        column.entries().iter().map(|&(node, d, share)| share * values[node.index()][usize::from(d)]).sum()
     }
 
     /// The history row of the present time.

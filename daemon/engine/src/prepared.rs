@@ -1,16 +1,16 @@
 //! Preparation: everything that can be computed before the first increment.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::cache;
+use crate::condensation::{Setting, Statics};
 use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::element::{Elasticity, connector};
 use crate::examination::{self, Examined};
 use crate::fingerprint::fingerprint;
-use crate::kept::{Kept, Prepared};
 use crate::model::{Connector, ElementId, Equation, Model};
+use crate::nodal::Nodal;
 use crate::outputs::{Outputs, Source};
 use crate::port::PortList;
 use crate::port_config::PortConfig;
@@ -18,20 +18,14 @@ use crate::procedure::loading::Loading;
 use crate::procedure::rows::RowPlan;
 use crate::simulation::{ContactPointInfo, Phase, PrepareOptions};
 use crate::solve::assembly::{coordinates, elasticities};
-use crate::solve::bodies::{choose_path, prepare_bodies};
-use crate::solve::body::{Body, BodyError};
-use crate::solve::budget::{Budget, Shortage};
+use crate::solve::budget::Budget;
 use crate::solve::columns::Column;
-use crate::solve::condensed::Condensed;
 use crate::solve::constraints::Constraints;
-use crate::solve::contact::{ContactSystem, Structure, initial_springs};
 use crate::solve::context::Context;
 use crate::solve::floating::Floating;
-use crate::solve::loose::Loose;
 use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
 use crate::solve::parts::Sample;
-use crate::solve::sparse::SparseStructure;
 
 /// Everything that can be computed before the first increment. Immutable; shared by sessions and instances.
 pub struct PreparedModel {
@@ -50,12 +44,14 @@ pub struct PreparedModel {
     pub(crate) motions: Vec<Motions>,
     pub(crate) floating: Floating,
     pub(crate) elasticities: Vec<Elasticity>,
-    pub(crate) bodies: Arc<Vec<Body>>,
+    /// What static steps need; none without one.
+    pub(crate) statics: Option<Statics>,
     /// Elements with a prescribed direction: they carry the reactions.
     pub(crate) support_elements: Vec<u32>,
-    pub(crate) condensed: Condensed,
-    pub(crate) contact: ContactSystem,
-    pub(crate) loose: Loose,
+    /// What dynamic steps need; none without one.
+    pub(crate) nodal: Option<Nodal>,
+    /// Every column: those that carry loads, then those that only measure.
+    pub(crate) columns: Vec<Column>,
     /// Columns that carry loads; the rest only measure.
     pub(crate) real_columns: usize,
     /// Selected output ports' sources.
@@ -66,6 +62,8 @@ pub struct PreparedModel {
     /// Whether no equation and no spring resists a translation of everything in a direction: then forces balance in it.
     pub(crate) translates: [bool; 3],
     pub(crate) fingerprint: u64,
+    /// Size of the model: what rounding of coordinates is judged against \[length\].
+    pub(crate) extent: f64,
 }
 
 impl PreparedModel {
@@ -95,61 +93,21 @@ impl PreparedModel {
             points: &row_points,
             columns: &columns,
         };
-        let (condense, coupled) = choose_path(&context, options.path, &bodies, &motions, &floating);
-        if let Some(coupled) = &coupled
-            && let Err(shortage) = budget.take(coupled.numbers())
-        {
-            return Err(vec![too_large(&shortage, "the sparse system")]);
-        }
         let fingerprint = fingerprint(&model);
-        if options.cache.is_some() && !condense {
-            tracing::warn!("the model takes the sparse path, so it is neither taken from disk nor kept there");
-        }
-        let kept = options.cache.as_ref().filter(|_| condense).map(|cache| Kept::new(cache, &context, fingerprint));
-        let stored = kept.as_ref().and_then(|kept| {
-            announce(Phase::Cache);
-            kept.load(&context, &bodies)
-        });
-        let (mut prepared, contributions) = match stored {
-            Some((stored, numbers)) => {
-                budget.take(numbers).map_err(|shortage| vec![too_large(&shortage, "the prepared model")])?;
-                stored
-            }
-            None => {
-                let computed = compute(&context, &bodies, &motions, options.threads, condense, announce)?;
-                if let Some(kept) = &kept {
-                    announce(Phase::Cache);
-                    kept.store(&computed);
-                }
-                computed
-            }
+        let setting = Setting {
+            bodies: &bodies,
+            motions: &motions,
+            floating: &floating,
+            rows: rows.count(),
+            real_columns,
+            first_loose,
         };
-        announce(Phase::Condense);
-        let loads = floating.loads(&columns, &bodies, &motions);
-        let (condensed, compliance) =
-            Condensed::new(&context, &bodies, &prepared, &contributions, &floating, loads, condense);
-        for body in &mut prepared {
-            body.keep_columns(real_columns);
-        }
-        let loose = Loose::new(&floating.loose, first_loose, &condensed);
-        let prepared = Arc::new(prepared);
-        let structure = match coupled {
-            None => Structure::Dense(compliance),
-            Some(coupled) => {
-                let own = coupled.own_compliances();
-                Structure::Sparse(Box::new(SparseStructure { bodies: prepared.clone(), coupled, own }))
-            }
+        let statics = match model.has_statics() {
+            false => None,
+            true => Some(Statics::prepare(&context, &setting, options, fingerprint, announce)?),
         };
-        let contact = ContactSystem {
-            extent: model.mesh.nodes.iter().flatten().fold(0.0, |m, x| x.abs().max(m)),
-            springs: initial_springs(&structure, &floating.gaps),
-            gap_motions: floating.gaps.clone(),
-            resisted: floating.resisted.clone(),
-            loose: floating.loose.clone(),
-            structure,
-            count: rows.count(),
-            behaviors: model.interactions.iter().map(|i| i.normal.clone()).collect(),
-        };
+        let nodal =
+            model.has_dynamics().then(|| Nodal::new(&constraints, &row_points, points.len(), model.mesh.nodes.len()));
         let all = PortList { inputs: loading.inputs.clone(), outputs: outputs.ports.clone() };
         let (ports, sources) = match &options.ports_toml {
             None => (all, outputs.sources.clone()),
@@ -171,15 +129,9 @@ impl PreparedModel {
                 clearance: p.clearance,
             })
             .collect();
+        let extent = model.mesh.nodes.iter().flatten().fold(0.0f64, |m, x| x.abs().max(m));
         let load_totals = loading.columns.iter().map(total_force).collect();
         let translates = std::array::from_fn(|d| translates(&model, d));
-        tracing::debug!(
-            bodies = prepared.len(),
-            unknowns = prepared.iter().map(|b| b.count).sum::<usize>(),
-            factor = prepared.iter().filter_map(Body::factor_in_memory).map(|f| f.size().values).sum::<usize>(),
-            contact_points = points.len(),
-            "prepared"
-        );
         Ok(Self {
             model,
             ports,
@@ -194,17 +146,17 @@ impl PreparedModel {
             motions,
             floating,
             elasticities,
-            bodies: prepared,
+            statics,
+            nodal,
             support_elements,
-            condensed,
-            contact,
-            loose,
+            columns,
             real_columns,
             sources,
             outputs,
             load_totals,
             translates,
             fingerprint,
+            extent,
         })
     }
 
@@ -277,54 +229,19 @@ impl PreparedModel {
 
     /// Sparse factorisations that the preparation did.
     pub(crate) fn factorizations(&self) -> u32 {
-        self.bodies.iter().filter(|b| b.was_factored()).count() as u32
+        let factored = |statics: &Statics| statics.bodies.iter().filter(|b| b.was_factored()).count() as u32;
+        self.statics.as_ref().map_or(0, factored)
     }
-}
 
-/// Computes the bodies; the errors are all there are.
-fn compute(
-    context: &Context<'_>,
-    bodies: &Bodies,
-    motions: &[Motions],
-    threads: usize,
-    condense: bool,
-    announce: &mut dyn FnMut(Phase),
-) -> Result<Prepared, Vec<Diagnostic>> {
-    let (mut prepared, mut contributions, mut errors) = (Vec::new(), Vec::new(), Vec::new());
-    let results = prepare_bodies(context, bodies, motions, threads, condense, announce);
-    for (b, result) in results.into_iter().enumerate() {
-        match result {
-            Ok((body, contribution)) => {
-                prepared.push(body);
-                contributions.push(contribution);
-            }
-            Err(BodyError::NoStiffness { node, direction }) => errors.push(Diagnostic::error(
-                Place::nowhere(),
-                "",
-                format!(
-                    "node {} has no stiffness in direction {}: part of its body can move without resistance",
-                    context.model.mesh.node_labels[node.index()],
-                    direction + 1
-                ),
-                "connect it by whole faces, or hold it by *BOUNDARY",
-            )),
-            Err(BodyError::Memory(shortage)) => {
-                let name = examination::body_name(context.model, &bodies.nodes[b], &bodies.elements[b]);
-                errors.push(too_large(&shortage, &name));
-            }
-        }
+    /// What dynamic steps need.
+    pub(crate) fn nodal(&self) -> &Nodal {
+        self.nodal.as_ref().expect("only dynamic steps ask, and a deck that has one prepares for them")
     }
-    if errors.is_empty() { Ok((prepared, contributions)) } else { Err(errors) }
-}
 
-/// A model that does not fit into memory.
-fn too_large(shortage: &Shortage, what: &str) -> Diagnostic {
-    Diagnostic::error(
-        Place::nowhere(),
-        "",
-        shortage.describe(what),
-        "use a coarser mesh away from contact, a machine with more memory, or another path (dense needs the square of the contact points)",
-    )
+    /// What static steps need.
+    pub(crate) fn statics(&self) -> &Statics {
+        self.statics.as_ref().expect("only static steps ask, and a deck that has one prepares for them")
+    }
 }
 
 /// Whether equations and springs let everything move together in a direction.

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::procedure::loading::Course;
 use crate::procedure::modified_hard::Verdict;
 use crate::solve::contact::{ContactSolver, Row};
-use crate::state::State;
+use crate::state::{Shape, State};
 
 /// Called at the end of each increment; also asked whether to go on.
 pub trait Watch {
@@ -36,13 +36,14 @@ impl Watch for () {
 pub struct Simulation {
     pub(crate) prepared: Arc<PreparedModel>,
     pub(crate) state: State,
-    pub(crate) solver: ContactSolver,
+    /// Of static steps.
+    pub(crate) solver: Option<ContactSolver>,
     pub(crate) work: Work,
     pub(crate) derived: Derived,
     /// Input of each real column, if it is one.
     input_of_column: Vec<Option<usize>>,
     /// Total time at the start of each step.
-    step_starts: Vec<f64>,
+    pub(crate) step_starts: Vec<f64>,
 }
 
 /// Work space of an attempt; nothing in it outlives one.
@@ -63,6 +64,8 @@ pub(crate) struct Work {
     pub relief: Vec<f64>,
     pub tangential: Vec<f64>,
     pub scratch: Vec<f64>,
+    /// Overclosures from which dashpots measure their speeds.
+    pub starts: Vec<f64>,
     /// What each row does.
     pub rows: Vec<Row>,
     /// Multipliers of augmented Lagrange.
@@ -99,7 +102,9 @@ pub fn check_checkpoint(model: &Model, bytes: &[u8]) -> Result<(), RestoreError>
 impl Simulation {
     /// At the start of the first step.
     pub fn new(prepared: Arc<PreparedModel>) -> Self {
-        let (points, n, motions) = (prepared.points.len(), prepared.rows.count(), prepared.floating.count());
+        let (points, n) = (prepared.points.len(), prepared.rows.count());
+        let springs = prepared.statics.as_ref().map_or_else(Vec::new, |statics| statics.contact.springs.clone());
+        let motions = springs.len();
         let inputs = prepared.loading.input_columns.len();
         let mut input_of_column = vec![None; prepared.real_columns];
         for (input, &column) in prepared.loading.input_columns.iter().enumerate() {
@@ -139,10 +144,11 @@ impl Simulation {
             tangential: vec![0.0; 2 * n],
             slip: vec![0.0; 2 * n],
             motions: vec![0.0; motions],
-            springs: prepared.contact.springs.clone(),
+            springs,
             conjugates: vec![0.0; prepared.real_columns],
             external_work: 0.0,
             last_change: 0.0,
+            motion: None,
         };
         let work = Work {
             coefficients: Vec::with_capacity(prepared.real_columns),
@@ -159,6 +165,7 @@ impl Simulation {
             relief: vec![0.0; n],
             tangential: vec![0.0; 2 * n],
             scratch: vec![0.0; 2 * n],
+            starts: vec![0.0; n],
             rows: Vec::with_capacity(n),
             multipliers: vec![0.0; points],
             penetrations: vec![0.0; points],
@@ -169,8 +176,9 @@ impl Simulation {
             scale: 0.0,
         };
         let derived = Derived { overclosures: vec![0.0; n], relief: vec![0.0; n], ..Derived::default() };
-        let solver = ContactSolver::new(&prepared.contact);
+        let solver = prepared.statics.as_ref().map(|statics| ContactSolver::new(&statics.contact));
         let mut simulation = Self { prepared, state, solver, work, derived, input_of_column, step_starts };
+        simulation.begin_motion();
         simulation.recompute();
         simulation
     }
@@ -287,7 +295,12 @@ impl Simulation {
 
     /// Returns to a checkpoint of the same model, bit for bit. On error nothing changes.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
-        self.state = State::decode(bytes, self.prepared.fingerprint, &self.state, self.prepared.model.steps.len())?;
+        let model = &self.prepared.model;
+        let shape = Shape {
+            dynamic: model.steps.iter().map(|step| step.procedure.is_dynamic()).collect(),
+            nodes: model.mesh.nodes.len(),
+        };
+        self.state = State::decode(bytes, self.prepared.fingerprint, &self.state, &shape)?;
         self.recompute();
         Ok(())
     }
@@ -323,8 +336,11 @@ impl Simulation {
         self.state.increment_index = 0;
         self.state.easy_increments = 0;
         self.state.counts.push(WorkCounts::default());
+        self.begin_motion();
         self.remove_pairs();
-        self.begin_overclosures();
+        if self.state.motion.is_none() {
+            self.begin_overclosures();
+        }
         self.recompute();
     }
 }

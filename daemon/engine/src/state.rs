@@ -10,13 +10,52 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::simulation::{RestoreError, WorkCounts};
+use crate::simulation::{Energies, RestoreError, WorkCounts};
 use crate::solve::condensed::Response;
 
 const MAGIC: [u8; 4] = *b"OVCK";
 /// Raised whenever the meaning of the payload changes.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 const HEADER: usize = 20;
+
+/// What a state must fit besides a state of the same model.
+pub struct Shape {
+    /// Whether each step is dynamic.
+    pub dynamic: Vec<bool>,
+    /// Nodes of the mesh.
+    pub nodes: usize,
+}
+
+/// Where a dynamic analysis stands. Nodal vectors have an entry for each node of the mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Motion {
+    /// Displacement \[length\].
+    pub displacement: Vec<[f64; 3]>,
+    /// Velocity [length/time]; in an explicit step that of the middle of the last increment.
+    pub velocity: Vec<[f64; 3]>,
+    /// Acceleration [length/time²]; in an explicit step that of the start of the last increment.
+    pub acceleration: Vec<[f64; 3]>,
+    /// Reaction at prescribed directions \[force\], zero elsewhere.
+    pub reaction: Vec<[f64; 3]>,
+    /// Internal less external forces, softened contact and dampers among the former \[force\]; empty in explicit steps.
+    pub unbalance: Vec<[f64; 3]>,
+    /// Overclosure that each contact row counts as none: where it was when it closed in an impact \[length\].
+    pub offsets: Vec<f64>,
+    /// Rate of each real column [unit/time], and at the start of the step.
+    pub rates: Vec<f64>,
+    /// See `rates`.
+    pub rates_start: Vec<f64>,
+    /// Size of the last increment \[time\]; 0 before the first.
+    pub increment_last: f64,
+    /// Largest force so far \[force\]: what half-increment residuals are compared with.
+    pub force_max: f64,
+    /// ETOTAL at the start of the step, and the largest energy since \[energy\].
+    pub energy_start: f64,
+    /// See `energy_start`.
+    pub energy_max: f64,
+    /// Energies at the end of the last increment; in an explicit step at its start.
+    pub energies: Energies,
+}
 
 /// Everything that an increment changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,6 +119,8 @@ pub struct State {
     pub external_work: f64,
     /// Total time of the last status change; 0 before the first.
     pub last_change: f64,
+    /// In dynamic steps.
+    pub motion: Option<Motion>,
 }
 
 impl State {
@@ -101,12 +142,12 @@ impl State {
     }
 
     /// Reads a checkpoint and checks that it has the shape of `like`.
-    pub fn decode(bytes: &[u8], fingerprint: u64, like: &State, steps: usize) -> Result<Self, RestoreError> {
+    pub fn decode(bytes: &[u8], fingerprint: u64, like: &State, shape: &Shape) -> Result<Self, RestoreError> {
         let damaged = |detail: &str| RestoreError::Damaged { detail: detail.into() };
         let payload = Self::check(bytes, fingerprint)?;
         let (state, rest) =
             postcard::take_from_bytes::<State>(payload).map_err(|_| damaged("the payload cannot be decoded"))?;
-        Self::check_shape(state, rest, like, steps)
+        Self::check_shape(state, rest, like, shape)
     }
 
     /// Payload of a checkpoint of a model; refuses other files and damaged ones.
@@ -133,7 +174,7 @@ impl State {
     }
 
     /// A state whose lists are as long as those of `like`.
-    fn check_shape(state: State, rest: &[u8], like: &State, steps: usize) -> Result<Self, RestoreError> {
+    fn check_shape(state: State, rest: &[u8], like: &State, shape: &Shape) -> Result<Self, RestoreError> {
         let damaged = |detail: &str| RestoreError::Damaged { detail: detail.into() };
         let lengths = |s: &State| {
             [
@@ -158,7 +199,19 @@ impl State {
                 s.conjugates.len(),
             ]
         };
-        let step = state.step as usize;
+        let (step, steps) = (state.step as usize, shape.dynamic.len());
+        let nodes = shape.nodes;
+        let moves = |m: &Motion| {
+            let vectors = [&m.displacement, &m.velocity, &m.acceleration, &m.reaction];
+            vectors.iter().all(|v| v.len() == nodes)
+                && (m.unbalance.is_empty() || m.unbalance.len() == nodes)
+                && m.offsets.len() == state.forces.len()
+                && [&m.rates, &m.rates_start].iter().all(|v| v.len() == state.coefficients.len())
+        };
+        let dynamic = shape.dynamic.get(step).copied();
+        if Some(state.motion.is_some()) != dynamic || !state.motion.as_ref().is_none_or(moves) {
+            return Err(damaged("the payload does not fit this model"));
+        }
         if !rest.is_empty() || lengths(&state) != lengths(like) || step >= steps || state.counts.len() != step + 1 {
             return Err(damaged("the payload does not fit this model"));
         }
@@ -201,13 +254,39 @@ mod tests {
             conjugates: vec![2.0, 3.0],
             external_work: 0.125,
             last_change: 0.2,
+            motion: None,
         }
+    }
+
+    fn statics() -> Shape {
+        Shape { dynamic: vec![false], nodes: 2 }
+    }
+
+    #[test]
+    fn a_motion_fits_the_mesh_and_the_step() {
+        let dynamic = Shape { dynamic: vec![true], nodes: 2 };
+        let vector = vec![[0.5, -0.0, 1.0]; 2];
+        let motion = Motion {
+            displacement: vector.clone(),
+            velocity: vector.clone(),
+            acceleration: vector.clone(),
+            reaction: vector,
+            offsets: vec![0.0; 3],
+            rates: vec![0.0; 2],
+            rates_start: vec![0.0; 2],
+            ..Motion::default()
+        };
+        let moving = State { motion: Some(motion), ..state() };
+        let bytes = moving.encode(7);
+        assert_eq!(State::decode(&bytes, 7, &state(), &dynamic).expect("own bytes"), moving);
+        assert!(State::decode(&bytes, 7, &state(), &statics()).is_err());
+        assert!(State::decode(&bytes, 7, &state(), &Shape { nodes: 3, ..dynamic }).is_err());
     }
 
     #[test]
     fn a_checkpoint_comes_back_bit_for_bit() {
         let bytes = state().encode(7);
-        let back = State::decode(&bytes, 7, &state(), 1).expect("own bytes");
+        let back = State::decode(&bytes, 7, &state(), &statics()).expect("own bytes");
         assert_eq!(back, state());
         assert!(back.coefficients[1].is_sign_negative());
     }
@@ -218,16 +297,22 @@ mod tests {
         for at in 0..bytes.len() {
             let mut bad = bytes.clone();
             bad[at] ^= 0x41;
-            assert!(State::decode(&bad, 7, &state(), 1).is_err(), "byte {at}");
-            assert!(State::decode(&bytes[..at], 7, &state(), 1).is_err(), "cut at {at}");
+            assert!(State::decode(&bad, 7, &state(), &statics()).is_err(), "byte {at}");
+            assert!(State::decode(&bytes[..at], 7, &state(), &statics()).is_err(), "cut at {at}");
         }
     }
 
     #[test]
     fn another_model_or_version_is_named() {
         let mut bytes = state().encode(7);
-        assert_eq!(State::decode(&bytes, 8, &state(), 1), Err(RestoreError::OtherModel { found: 7, expected: 8 }));
+        assert_eq!(
+            State::decode(&bytes, 8, &state(), &statics()),
+            Err(RestoreError::OtherModel { found: 7, expected: 8 })
+        );
         bytes[4] = 9;
-        assert_eq!(State::decode(&bytes, 7, &state(), 1), Err(RestoreError::Version { found: 9, supported: VERSION }));
+        assert_eq!(
+            State::decode(&bytes, 7, &state(), &statics()),
+            Err(RestoreError::Version { found: 9, supported: VERSION })
+        );
     }
 }

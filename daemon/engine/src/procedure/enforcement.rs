@@ -12,7 +12,7 @@ use super::modified_hard::{Judged, Verdict, judge, withdraw};
 use super::rows::Moment;
 use crate::model::FrictionOnset;
 use crate::simulation::Simulation;
-use crate::solve::contact::{Problem, SolveCounts, SolveFailure, Unknowns, Wall};
+use crate::solve::contact::{ContactSolver, ContactSystem, Problem, SolveCounts, SolveFailure, Unknowns, Wall};
 
 /// Solves of one increment before it is given up.
 const ROUNDS_MAX: u32 = 2000;
@@ -36,6 +36,12 @@ pub struct IncrementCounts {
     pub augmentations: u32,
 }
 
+/// Bodies as contact sees them, and what solves for its forces.
+pub(crate) struct Coupling<'a> {
+    pub system: &'a ContactSystem,
+    pub solver: &'a mut ContactSolver,
+}
+
 impl Simulation {
     /// Where the present step stands at a step time.
     pub(crate) fn moment(prepared: &crate::prepared::PreparedModel, step: usize, time: f64) -> Moment<'_> {
@@ -44,8 +50,14 @@ impl Simulation {
         Moment { model: &prepared.model, plan: &prepared.rows, step, progress, period }
     }
 
-    /// Finds equilibrium for the free overclosures and loads in the work space. `size` is the increment \[time\].
-    pub(crate) fn equilibrium(&mut self, time: f64, size: f64) -> Result<IncrementCounts, SolveFailure> {
+    /// Finds equilibrium for the free overclosures and loads in the work space. A dashpot's speed is the way from
+    /// `work.starts` over `size` \[time\], which is the increment of a static step.
+    pub(crate) fn equilibrium(
+        &mut self,
+        coupling: &mut Coupling<'_>,
+        time: f64,
+        size: f64,
+    ) -> Result<IncrementCounts, SolveFailure> {
         let prepared = self.prepared.clone();
         let moment = Self::moment(&prepared, self.state.step as usize, time);
         self.begin_rows(&moment, size);
@@ -63,7 +75,7 @@ impl Simulation {
                 motions: &mut work.motions,
                 springs: &mut work.springs,
             };
-            match self.solver.solve(&prepared.contact, problem, &mut unknowns) {
+            match coupling.solver.solve(coupling.system, problem, &mut unknowns) {
                 Ok(solved) => {
                     counts.solves.equilibrium_iterations += solved.equilibrium_iterations;
                     counts.solves.severe_discontinuity_iterations += solved.severe_discontinuity_iterations;
@@ -86,7 +98,7 @@ impl Simulation {
             }
             self.note_penetrations(&moment);
             loop {
-                match self.augment(&moment) {
+                match self.augment(coupling, &moment) {
                     Augmented::Enough => return Ok(counts),
                     Augmented::Solved => counts.augmentations += 1,
                     Augmented::ToSolve => {
@@ -104,7 +116,7 @@ impl Simulation {
 
     /// Rows, statuses and multipliers at the start of an attempt.
     fn begin_rows(&mut self, moment: &Moment<'_>, size: f64) {
-        let (state, work, start) = (&self.state, &mut self.work, &self.derived.overclosures);
+        let (state, work, now) = (&self.state, &mut self.work, &self.derived.overclosures);
         let points = moment.plan.points();
         work.changes.clear();
         work.changes.resize(points, 0);
@@ -112,17 +124,17 @@ impl Simulation {
         work.rows.clear();
         for i in 0..points {
             let mut row = moment.normal_row(state, i, state.closed[i], work.multipliers[i]);
-            row.dashpot = moment.dashpot(i, start[i], size);
+            row.dashpot = moment.dashpot(i, work.starts[i], size);
             // A pair that no longer acts begins open.
             work.closed[i] = state.closed[i] && moment.is_active(i);
             work.rows.push(row);
         }
         for (k, &tangential) in (points..).zip(&moment.plan.tangential) {
             let point = tangential.point as usize;
-            let touches = state.closed[point] || start[point] >= -TOUCHING * moment.plan.length(point);
+            let touches = state.closed[point] || now[point] >= -TOUCHING * moment.plan.length(point);
             let tied = moment.sticks(point, touches, state.closed[point]);
             let mut row = moment.tangential_row(state, tangential, tied);
-            row.dashpot = moment.tangential_dashpot(point, start[point], start[k], size);
+            row.dashpot = moment.tangential_dashpot(point, now[point], work.starts[k], size);
             work.closed[k] = tied;
             work.rows.push(row);
         }
@@ -267,7 +279,7 @@ impl Simulation {
         let mut changed = false;
         for (k, tangential) in (points..).zip(&moment.plan.tangential) {
             let point = tangential.point as usize;
-            let start = self.derived.overclosures[k];
+            let start = self.work.starts[k];
             let dashpot = moment.tangential_dashpot(point, self.work.overclosures[point], start, size);
             let coefficient = |d: Option<crate::solve::contact::Dashpot>| d.map_or(0.0, |d| d.coefficient());
             let largest = coefficient(self.work.rows[point].dashpot);
@@ -290,13 +302,13 @@ impl Simulation {
     }
 
     /// Augmented Lagrange: where a penetration exceeds its tolerance every multiplier is updated.
-    fn augment(&mut self, moment: &Moment<'_>) -> Augmented {
+    fn augment(&mut self, coupling: &mut Coupling<'_>, moment: &Moment<'_>) -> Augmented {
         let points = moment.plan.points();
         let too_deep = (0..points).any(|i| {
             let Some((tolerance, clearance)) = moment.penetration_max(i) else { return false };
             let h = self.work.penetrations[i];
             // A multiplier that is too large holds a point off.
-            let presses = || self.work.rows[i].law(&self.prepared.contact.behaviors, h).pressure != 0.0;
+            let presses = || self.work.rows[i].law(&coupling.system.behaviors, h).pressure != 0.0;
             h > tolerance || -(h + clearance) > tolerance && presses()
         });
         if !too_deep {
@@ -312,7 +324,7 @@ impl Simulation {
                 continue;
             };
             let work = &mut self.work;
-            let pressure = work.rows[i].law(&self.prepared.contact.behaviors, work.penetrations[i]).pressure;
+            let pressure = work.rows[i].law(&coupling.system.behaviors, work.penetrations[i]).pressure;
             if pressure != 0.0 {
                 gaps[i] = work.penetrations[i] + clearance;
             }
@@ -323,7 +335,7 @@ impl Simulation {
             work.rows[i].dashpot = dashpot;
         }
         plain &= self.work.rows[points..].iter().all(|row| row.dashpot.is_none());
-        let solved = plain && self.correct(moment, &gaps);
+        let solved = plain && self.correct(coupling, moment, &gaps);
         self.work.gaps = gaps;
         if solved { Augmented::Solved } else { Augmented::ToSolve }
     }
@@ -331,8 +343,7 @@ impl Simulation {
     /// A step of augmented Lagrange with the closed points as they are; whether they stay that.
     ///
     /// The penetrations that are left come out of the last ones, with all their digits: `h_free − W F` has lost them.
-    fn correct(&mut self, moment: &Moment<'_>, gaps: &[f64]) -> bool {
-        let prepared = self.prepared.clone();
+    fn correct(&mut self, coupling: &mut Coupling<'_>, moment: &Moment<'_>, gaps: &[f64]) -> bool {
         let points = moment.plan.points();
         let work = &mut self.work;
         work.overclosures[..points].iter_mut().zip(&work.penetrations).enumerate().for_each(|(i, (h, exact))| {
@@ -348,7 +359,7 @@ impl Simulation {
             motions: &mut work.motions,
             springs: &mut work.springs,
         };
-        if !self.solver.correct(&prepared.contact, &work.rows, gaps, &mut unknowns) {
+        if !coupling.solver.correct(coupling.system, &work.rows, gaps, &mut unknowns) {
             return false;
         }
         let forces = work.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
@@ -359,7 +370,7 @@ impl Simulation {
             Wall::OneSided => work.overclosures[i] <= row.position + slack,
             Wall::None if i < points && moment.penetration_max(i).is_some() => {
                 let pulls = self.state.latched[i] || work.forces[i] > force_rounding;
-                let pressure = row.law(&prepared.contact.behaviors, work.overclosures[i]).pressure;
+                let pressure = row.law(&coupling.system.behaviors, work.overclosures[i]).pressure;
                 if work.closed[i] { pulls } else { pressure <= 0.0 }
             }
             Wall::None => true,

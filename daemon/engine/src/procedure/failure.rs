@@ -14,12 +14,17 @@ pub(crate) enum Failure {
     Slid(Vec<u32>),
     /// Numbers that are none.
     Overflow,
+    /// An increment of a procedure that is not solved yet.
+    Unsolved(f64),
 }
 
 impl Failure {
     /// A smaller increment cannot help a point that slides or an input beyond all measure.
     pub fn is_final(&self) -> bool {
-        matches!(self, Failure::Slid(_) | Failure::Overflow | Failure::Solve(SolveFailure::Unheld { .. }))
+        matches!(
+            self,
+            Failure::Slid(_) | Failure::Overflow | Failure::Unsolved(_) | Failure::Solve(SolveFailure::Unheld { .. })
+        )
     }
 
     pub fn describe(&self, simulation: &Simulation) -> String {
@@ -46,6 +51,7 @@ impl Failure {
             Failure::Overflow => {
                 format!("{after}: the solution leaves the range of numbers; an input is too large for this model")
             }
+            Failure::Unsolved(size) => format!("{after}: implicit increments of {size} are not solved yet"),
             Failure::Slid(points) => format!(
                 "{after}: a secondary node slides beyond half a face of the primary surface, which small sliding does not cover: node {}",
                 list(points)

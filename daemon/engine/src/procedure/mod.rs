@@ -3,8 +3,10 @@
 pub mod enforcement;
 mod failure;
 pub mod interference;
+pub mod interval;
 pub mod loading;
 pub mod modified_hard;
+pub mod motion;
 mod removal;
 pub mod rows;
 pub mod statics;

@@ -42,8 +42,8 @@ impl Simulation {
         self.free_overclosures(&coefficients, 0.0);
         self.state.coefficients = coefficients;
         let (state, work) = (&mut self.state, &mut self.work);
-        prepared.contact.relief(&state.forces, &mut work.relief);
-        prepared.contact.overclosures(&work.free, &work.relief, &state.motions, &mut work.overclosures);
+        prepared.statics().contact.relief(&state.forces, &mut work.relief);
+        prepared.statics().contact.overclosures(&work.free, &work.relief, &state.motions, &mut work.overclosures);
         for i in (0..prepared.points.len()).filter(|&i| now.penetration_max(i).is_some()) {
             state.penetrations[i] = match before.is_active(i) {
                 true => state.penetrations[i] + (work.free[i] - old[i]),
@@ -62,9 +62,9 @@ impl Simulation {
         let (state, work) = (&self.state, &mut self.work);
         work.given.clear();
         work.given.extend(state.removed.iter().map(|f| left * f));
-        prepared.contact.relief(&work.given, &mut work.relief);
+        prepared.statics().contact.relief(&work.given, &mut work.relief);
         work.free.iter_mut().zip(&work.relief).for_each(|(h, relief)| *h -= relief);
-        let motions = &prepared.contact.gap_motions;
+        let motions = &prepared.statics().contact.gap_motions;
         for (m, load) in work.load.iter_mut().enumerate() {
             *load -= motions.column(m).iter().zip(&work.given).map(|(d, f)| d * f).sum::<f64>();
         }
@@ -73,7 +73,7 @@ impl Simulation {
                 *force = 0.0;
             }
         }
-        prepared.contact.relief(&work.forces, &mut work.relief);
+        prepared.statics().contact.relief(&work.forces, &mut work.relief);
         true
     }
 
@@ -83,7 +83,7 @@ impl Simulation {
         let prepared = self.prepared.clone();
         let work = &mut self.work;
         work.forces.iter_mut().zip(&work.given).for_each(|(force, given)| *force += given);
-        prepared.contact.relief(&work.forces, &mut work.relief);
-        prepared.contact.overclosures(&work.free, &work.relief, &work.motions, &mut work.overclosures);
+        prepared.statics().contact.relief(&work.forces, &mut work.relief);
+        prepared.statics().contact.overclosures(&work.free, &work.relief, &work.motions, &mut work.overclosures);
     }
 }

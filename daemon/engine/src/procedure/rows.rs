@@ -5,7 +5,8 @@
 use crate::contact::points::ContactPoint;
 use crate::law::{Damping, NormalBehavior, Penalty};
 use crate::model::{
-    ContactControls, Enforcement, Friction, FrictionOnset, Model, ModifiedHard, PenetrationTolerance, StepContact,
+    ContactControls, Enforcement, Friction, FrictionOnset, MechanicalConstraint, Model, ModifiedHard,
+    PenetrationTolerance, StepContact,
 };
 use crate::solve::contact::{Curve, Dashpot, Row, Viscosity, Wall};
 use crate::state::State;
@@ -187,7 +188,19 @@ impl<'a> Moment<'a> {
     /// Controls of modified hard contact where they apply: to hard contact by multipliers.
     pub fn modified(&self, point: usize) -> Option<ModifiedHard> {
         let hard = self.is_active(point) && self.enforcement(point) == Some(Enforcement::Lagrange);
-        self.controls(point).modified.filter(|_| hard)
+        self.controls(point).modified.filter(|_| hard && !self.is_dynamic())
+    }
+
+    /// Whether a closed point has no overclosure: hard contact by multipliers, or kinematic.
+    pub fn is_exact(&self, point: usize) -> bool {
+        let by_penalty = self.model.is_explicit()
+            && self.model.pairs[self.plan.pairs[point] as usize].explicit.constraint == MechanicalConstraint::Penalty;
+        self.enforcement(point) == Some(Enforcement::Lagrange) && !by_penalty
+    }
+
+    /// Whether statuses of hard points change by impacts and releases, not within a solve.
+    pub fn is_dynamic(&self) -> bool {
+        self.model.steps[self.step].procedure.is_dynamic()
     }
 
     /// Whether surfaces at a point may not separate again.
@@ -226,7 +239,7 @@ impl<'a> Moment<'a> {
         match self.enforcement(point) {
             None => row.curve = Curve::Law(self.interaction(point) as u32),
             Some(Enforcement::Lagrange) => {
-                row.wall = match (latched, self.modified(point).is_some()) {
+                row.wall = match (latched, self.modified(point).is_some() || self.is_dynamic()) {
                     (true, _) => Wall::TwoSided,
                     (false, true) if closed => Wall::TwoSided,
                     (false, true) => Wall::None,

@@ -1,0 +1,44 @@
+//! How a dynamic step begins: displacements of what went before, velocities, and energies to compare with.
+
+use crate::simulation::Simulation;
+use crate::state::Motion;
+
+impl Simulation {
+    /// At the start of a step: a motion for a dynamic one, none for a static one. The first dynamic step has the initial
+    /// velocities, a later one those that the motion has; behind a static step everything is at rest.
+    pub(crate) fn begin_motion(&mut self) {
+        let prepared = self.prepared.clone();
+        let model = &prepared.model;
+        let step = self.state.step as usize;
+        if !model.steps[step].procedure.is_dynamic() {
+            self.state.motion = None;
+            return;
+        }
+        let nodes = model.mesh.nodes.len();
+        let mut motion = match self.state.motion.take() {
+            Some(motion) => motion,
+            None => {
+                let displacement = if step == 0 { vec![[0.0; 3]; nodes] } else { self.recover().displacement };
+                let mut velocity = vec![[0.0; 3]; nodes];
+                if !model.steps[..step].iter().any(|before| before.procedure.is_dynamic()) {
+                    for initial in &model.initial_velocities {
+                        velocity[initial.node.index()][usize::from(initial.direction)] = initial.value;
+                    }
+                }
+                prepared.nodal().extend(&mut velocity);
+                Motion {
+                    displacement,
+                    velocity,
+                    acceleration: vec![[0.0; 3]; nodes],
+                    reaction: vec![[0.0; 3]; nodes],
+                    offsets: vec![0.0; prepared.rows.count()],
+                    rates: vec![0.0; prepared.real_columns],
+                    rates_start: vec![0.0; prepared.real_columns],
+                    ..Motion::default()
+                }
+            }
+        };
+        motion.rates_start.clone_from(&motion.rates);
+        self.state.motion = Some(motion);
+    }
+}
