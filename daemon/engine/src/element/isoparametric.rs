@@ -18,7 +18,7 @@ struct Point {
 }
 
 /// Rows ∂x/∂ξ_r of the Jacobian.
-fn jacobian(sample: &Sample, coordinates: &[[f64; 3]]) -> [[f64; 3]; 3] {
+pub(super) fn jacobian(sample: &Sample, coordinates: &[[f64; 3]]) -> [[f64; 3]; 3] {
     let mut j = [[0.0; 3]; 3];
     for (x, d) in coordinates.iter().zip(&sample.basis.derivative) {
         for r in 0..3 {
@@ -35,7 +35,7 @@ fn cofactor(j: &[[f64; 3]; 3], r: usize, s: usize) -> f64 {
     j[r1][s1] * j[r2][s2] - j[r1][s2] * j[r2][s1]
 }
 
-fn determinant(j: &[[f64; 3]; 3]) -> f64 {
+pub(super) fn determinant(j: &[[f64; 3]; 3]) -> f64 {
     (0..3).map(|s| j[0][s] * cofactor(j, 0, s)).sum()
 }
 
@@ -51,9 +51,9 @@ fn point(sample: &Sample, coordinates: &[[f64; 3]]) -> Point {
     Point { gradient, volume: det * sample.weight }
 }
 
-/// Smallest det J over the points of stiffness and mass, times the volume of the parent's weights [length³].
+/// Smallest det J over the points of stiffness and further ones, times the volume of the parent's weights [length³].
 pub fn jacobian_min(table: &Table, coordinates: &[[f64; 3]]) -> f64 {
-    let samples = table.points.iter().chain(&table.mass);
+    let samples = table.points.iter().chain(&table.further);
     samples.map(|s| determinant(&jacobian(s, coordinates))).fold(f64::INFINITY, f64::min)
 }
 
@@ -100,7 +100,7 @@ pub fn stress(table: &Table, coordinates: &[[f64; 3]], elasticity: Elasticity, u
 /// Volume that each node stands for: ∫ N_a dV [length³]. Negative at the corners of quadratic tetrahedra and bricks.
 pub fn nodal_volumes(table: &Table, coordinates: &[[f64; 3]]) -> Vec<f64> {
     let mut out = vec![0.0; table.count];
-    for sample in &table.mass {
+    for sample in &table.products {
         let volume = determinant(&jacobian(sample, coordinates)) * sample.weight;
         for (o, n) in out.iter_mut().zip(sample.basis.value) {
             *o += n * volume;

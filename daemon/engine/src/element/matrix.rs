@@ -29,7 +29,7 @@ impl std::ops::Deref for Coordinates {
     }
 }
 
-/// Upper blocks of a symmetric stiffness matrix [force/length]: block (a, b), a ≤ b, row-major 3 x 3.
+/// Upper blocks of the symmetric matrix of an element, stiffness [force/length], mass or damping: block (a, b), a ≤ b, row-major 3 x 3.
 #[derive(Clone, Debug, Default)]
 pub struct Stiffness {
     count: usize,
@@ -63,6 +63,30 @@ impl Stiffness {
         self.blocks.clear();
         self.blocks.resize(count * (count + 1) / 2, [0.0; 9]);
         &mut self.blocks
+    }
+
+    /// Replaces the blocks by multiples of the unit matrix on the diagonal, one per node.
+    pub fn set_diagonal(&mut self, values: &[f64]) {
+        let count = values.len();
+        let blocks = self.clear(count);
+        for (a, &value) in values.iter().enumerate() {
+            let block = &mut blocks[block_index(count, a, a)];
+            (block[0], block[4], block[8]) = (value, value, value);
+        }
+    }
+
+    /// Adds a multiple of a matrix of as many nodes.
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        debug_assert_eq!(self.count, other.count);
+        for (sum, term) in self.blocks.as_flattened_mut().iter_mut().zip(other.blocks.as_flattened()) {
+            *sum += factor * term;
+        }
+    }
+
+    /// Number of nodes.
+    #[cfg(test)]
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// Block (a, b), a ≤ b.

@@ -4,6 +4,7 @@
 pub mod basis;
 pub mod brick;
 pub mod connector;
+pub mod connector_mass;
 #[cfg(test)]
 mod convergence_tests;
 mod elasticity;
@@ -11,6 +12,9 @@ pub mod face;
 mod hexahedron;
 mod incompatible;
 mod isoparametric;
+pub mod mass;
+#[cfg(test)]
+mod mass_tests;
 mod matrix;
 pub mod quad;
 mod table;

@@ -20,8 +20,10 @@ pub struct Table {
     pub count: usize,
     /// Points of stiffness and stress.
     pub points: Vec<Sample>,
-    /// Points of mass: enough for shape functions times volume on straight-sided elements.
-    pub mass: Vec<Sample>,
+    /// Further points where the volume must be positive: those that CalculiX takes for masses.
+    pub further: Vec<Sample>,
+    /// Points of masses and nodal volumes: enough for products of two shape functions times volume on straight-sided elements.
+    pub products: Vec<Sample>,
     /// Row per node, column per stress point: the least-squares polynomial through the points, at the nodes.
     pub extrapolation: Vec<Vec<f64>>,
 }
@@ -43,7 +45,7 @@ fn samples(shape: ElementShape, rule: &Rule) -> Vec<Sample> {
 impl Table {
     fn new(kind: ElementKind) -> Self {
         let shape = kind.shape();
-        let (rule, mass): (Rule, Rule) = match kind {
+        let (rule, further): (Rule, Rule) = match kind {
             ElementKind::C3D4 => (tetrahedron::rule_1(), tetrahedron::rule_4()),
             ElementKind::C3D10 => (tetrahedron::rule_4(), tetrahedron::rule_4()),
             ElementKind::C3D6 => (wedge::rule_2(), wedge::rule_6()),
@@ -59,8 +61,24 @@ impl Table {
         Self {
             count: shape.node_count(),
             points: samples(shape, &rule),
-            mass: samples(shape, &mass),
+            further: samples(shape, &further),
+            products: samples(shape, &products(shape)),
             extrapolation: extrapolation(kind, &rule),
+        }
+    }
+}
+
+/// Rule that integrates products of two shape functions times the volume of a straight-sided element.
+fn products(shape: ElementShape) -> Rule {
+    match shape {
+        ElementShape::Tetrahedron4 => tetrahedron::rule_4(),
+        ElementShape::Tetrahedron10 => tetrahedron::rule_14(),
+        ElementShape::Wedge6 => wedge::rule_21(),
+        ElementShape::Wedge15 => wedge::rule_28(),
+        ElementShape::Hexahedron8 => hexahedron::rule_27(),
+        ElementShape::Hexahedron20 => hexahedron::rule_64(),
+        ElementShape::Line2 | ElementShape::Point1 | ElementShape::Triangle3 | ElementShape::Quadrilateral4 => {
+            unreachable!("only solids have tables")
         }
     }
 }
@@ -136,7 +154,7 @@ mod tests {
                 ElementShape::Wedge6 | ElementShape::Wedge15 => 1.0,
                 _ => 8.0,
             };
-            for points in [&of(kind).points, &of(kind).mass] {
+            for points in [&of(kind).points, &of(kind).further, &of(kind).products] {
                 assert!((points.iter().map(|p| p.weight).sum::<f64>() - volume).abs() < 1e-14, "{kind:?}");
             }
         }

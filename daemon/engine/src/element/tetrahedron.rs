@@ -49,3 +49,22 @@ pub fn rule_4() -> Vec<([f64; 3], f64)> {
     let near = (5.0 - 5f64.sqrt()) / 20.0;
     (0..4).map(|a| (CORNER[a].map(|c| near + (far - near) * c), 1.0 / 24.0)).collect()
 }
+
+/// Fourteen points: exact for polynomials of degree 5. Source: Walkington (2000), Quadrature on simplices of arbitrary dimension.
+pub fn rule_14() -> Vec<([f64; 3], f64)> {
+    // Along the medians, either side of the centroid: three volume coordinates are equal.
+    const MEDIAN: [(f64, f64); 2] =
+        [(0.310_885_919_263_300_6, 0.018_781_320_953_002_643), (0.092_735_250_310_891_23, 0.012_248_840_519_393_659)];
+    // Between the midpoints of opposite edges: two pairs are equal.
+    const BETWEEN: (f64, f64) = (0.045_503_704_125_649_65, 0.007_091_003_462_846_911);
+    let mut rule = Vec::with_capacity(14);
+    for (equal, weight) in MEDIAN {
+        rule.extend(CORNER.map(|corner| (corner.map(|c| equal + (1.0 - 4.0 * equal) * c), weight)));
+    }
+    let (equal, weight) = BETWEEN;
+    for edge in EDGE {
+        let at = |i: usize| edge.iter().map(|&corner| CORNER[corner][i]).sum::<f64>();
+        rule.push((std::array::from_fn(|i| equal + (0.5 - 2.0 * equal) * at(i)), weight));
+    }
+    rule
+}

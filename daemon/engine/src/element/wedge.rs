@@ -1,7 +1,7 @@
 //! Wedges of six and fifteen nodes: a triangle `ξ, η ≥ 0, ξ + η ≤ 1` times `ζ` in [-1, 1].
 
 use super::basis::Basis;
-use super::hexahedron::{GAUSS_2, GAUSS_3};
+use super::hexahedron::{GAUSS_2, GAUSS_3, GAUSS_4};
 
 /// Natural coordinates of the corners.
 pub const CORNER: [[f64; 3]; 6] =
@@ -62,6 +62,22 @@ const CENTRE: [([f64; 2], f64); 1] = [([1.0 / 3.0, 1.0 / 3.0], 0.5)];
 const THREE: [([f64; 2], f64); 3] =
     [([1.0 / 6.0, 1.0 / 6.0], 1.0 / 6.0), ([2.0 / 3.0, 1.0 / 6.0], 1.0 / 6.0), ([1.0 / 6.0, 2.0 / 3.0], 1.0 / 6.0)];
 
+/// Seven points of the triangle, exact for polynomials of degree 5. Source: Radon (1948).
+fn seven() -> [([f64; 2], f64); 7] {
+    let root = 15f64.sqrt();
+    let (near, far) = ((6.0 - root) / 21.0, (6.0 + root) / 21.0);
+    let (light, heavy) = ((155.0 - root) / 2400.0, (155.0 + root) / 2400.0);
+    [
+        ([1.0 / 3.0, 1.0 / 3.0], 9.0 / 80.0),
+        ([near, near], light),
+        ([1.0 - 2.0 * near, near], light),
+        ([near, 1.0 - 2.0 * near], light),
+        ([far, far], heavy),
+        ([1.0 - 2.0 * far, far], heavy),
+        ([far, 1.0 - 2.0 * far], heavy),
+    ]
+}
+
 /// Two points on the axis.
 pub fn rule_2() -> Vec<([f64; 3], f64)> {
     product(&CENTRE, &GAUSS_2)
@@ -75,4 +91,14 @@ pub fn rule_6() -> Vec<([f64; 3], f64)> {
 /// Three points on three levels.
 pub fn rule_9() -> Vec<([f64; 3], f64)> {
     product(&THREE, &GAUSS_3)
+}
+
+/// Seven points on three levels.
+pub fn rule_21() -> Vec<([f64; 3], f64)> {
+    product(&seven(), &GAUSS_3)
+}
+
+/// Seven points on four levels.
+pub fn rule_28() -> Vec<([f64; 3], f64)> {
+    product(&seven(), &GAUSS_4)
 }

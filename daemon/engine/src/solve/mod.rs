@@ -1,6 +1,10 @@
 //! Linear algebra and the contact solve: bodies are factored once and condensed onto their contact points.
 
 pub mod assembly;
+#[allow(dead_code)] // Until dynamic steps use all of it.
+pub mod block_matrix;
+#[cfg(test)]
+mod block_matrix_tests;
 pub mod bodies;
 pub mod body;
 pub mod budget;
@@ -10,6 +14,10 @@ pub mod constraints;
 pub mod contact;
 pub mod context;
 pub mod floating;
+#[allow(dead_code)] // Until dynamic steps use all of it.
+pub mod inertia;
+#[cfg(test)]
+mod inertia_tests;
 pub mod lazy;
 pub mod linear;
 pub mod loose;
