@@ -88,7 +88,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
                     target: OutputTarget::Print,
                     set: Some(SetId(0)),
                     variables: vec!["RF".into()],
-                    frequency: 1,
+                    frequency: OutputFrequency::EVERY,
                     totals: Totals::Only,
                     summary: true,
                 }],

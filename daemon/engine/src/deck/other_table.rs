@@ -344,7 +344,6 @@ pub const OTHER: &[Keyword] = &[
     other("*ENERGY PRINT", OUTPUT),
     other("*FACE PRINT", OUTPUT),
     other("*FILE FORMAT", OUTPUT),
-    other("*FILE OUTPUT", OUTPUT),
     other("*FILTER", OUTPUT),
     other("*INCREMENTATION OUTPUT", OUTPUT),
     other("*INTEGRATED OUTPUT", OUTPUT),

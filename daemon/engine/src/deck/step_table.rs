@@ -6,10 +6,12 @@ use super::keywords::Placement::{Anywhere, Step};
 use super::keywords::{Keyword, Parameter as P};
 
 const STATICS_ONLY: &str = "only static steps are solved";
-const OUTPUT_DEFAULT: &str = "results are written at every increment that FREQUENCY selects";
+const OUTPUT_DEFAULT: &str =
+    "results are written at the increments that FREQUENCY, NUMBER INTERVAL or TIME INTERVAL select";
+const TIME_MARKS: &str = "results are written at the increment that reaches the end of an interval";
 const OUTPUT_FIXED: &str = "the layout of the result files is fixed";
 const SMALL_MOTION: &str = "displacements are small, so loads keep their directions";
-const SNAPSHOTS: &str = "snapshots are written at the increments that FREQUENCY selects and at the end of the step";
+const SNAPSHOTS: &str = "a snapshot is written at the increment that reaches the end of an interval";
 const LOAD_SIMPLE: &str = "give the load as plain values per set";
 
 /// Keywords that describe steps.
@@ -128,8 +130,8 @@ pub const STEPS: &[Keyword] = &[
             P::one_of("TOTALS", &[("NO", Read), ("YES", Read), ("ONLY", Read), ("", Read)]),
             P::one_of("GLOBAL", &[("YES", Silent), ("NO", Ignored("values are written in global directions"))]),
             P::one_of("SUMMARY", &[("YES", Read), ("NO", Read)]),
+            P::value("NUMBER INTERVAL"),
             P::ignored("TIME POINTS", OUTPUT_DEFAULT),
-            P::ignored("NUMBER INTERVAL", OUTPUT_DEFAULT),
         ],
     ),
     Keyword::output(
@@ -249,13 +251,21 @@ pub const STEPS: &[Keyword] = &[
             P::one_of("OP", &[("NEW", Read), ("ADD", Read), ("REPLACE", Read)]),
             P::silent("NAME"),
             P::ignored("DIAGNOSTICS", "reports of the iterations are always written"),
-            P::ignored("NUMBER INTERVAL", OUTPUT_DEFAULT),
-            P::ignored("TIME INTERVAL", OUTPUT_DEFAULT),
-            P::ignored("TIME MARKS", OUTPUT_DEFAULT),
+            P::value("NUMBER INTERVAL"),
+            P::value("TIME INTERVAL"),
+            P::one_of("TIME MARKS", &[("NO", Silent), ("YES", Ignored(TIME_MARKS)), ("", Ignored(TIME_MARKS))]),
             P::ignored("TIME POINTS", OUTPUT_DEFAULT),
             P::ignored("FILTER", "values are written as they are"),
             P::ignored("SENSOR", "values are written as they are"),
             P::ignored("MODE LIST", STATICS_ONLY),
+        ],
+    ),
+    Keyword::output(
+        "*FILE OUTPUT",
+        Forbidden,
+        &[
+            P::value("NUMBER INTERVAL"),
+            P::one_of("TIME MARKS", &[("NO", Silent), ("YES", Ignored(TIME_MARKS)), ("", Ignored(TIME_MARKS))]),
         ],
     ),
     Keyword {
@@ -271,8 +281,8 @@ pub const STEPS: &[Keyword] = &[
                 P::silent("STEP"),
                 P::silent("INC"),
                 P::silent("END STEP"),
-                P::ignored("NUMBER INTERVAL", SNAPSHOTS),
-                P::ignored("TIME MARKS", SNAPSHOTS),
+                P::value("NUMBER INTERVAL"),
+                P::one_of("TIME MARKS", &[("NO", Silent), ("YES", Ignored(SNAPSHOTS)), ("", Ignored(SNAPSHOTS))]),
             ],
         )
     },

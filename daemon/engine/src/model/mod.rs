@@ -8,12 +8,14 @@ mod contact;
 mod element;
 mod history;
 mod mesh;
+mod output;
 
 pub use analytical::*;
 pub use contact::*;
 pub use element::*;
 pub use history::*;
 pub use mesh::*;
+pub use output::*;
 
 /// What a keyword means where codes disagree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

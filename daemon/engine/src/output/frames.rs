@@ -117,7 +117,18 @@ impl Frames {
             Array::real("CSLIP", &["CSLIP1", "CSLIP2"], surface.slip.into_iter().flatten()),
             Array::small("CSTATUS", surface.status.into_iter()),
         ];
-        let mut point_data: Vec<&Array> = arrays.iter().collect();
+        // A static frame has neither.
+        let of_motion = [
+            ("V", &["V1", "V2", "V3"][..], &fields.solution.velocity),
+            ("A", &["A1", "A2", "A3"], &fields.solution.acceleration),
+        ];
+        let of_motion: Vec<Array> = (of_motion.into_iter())
+            .filter(|(_, _, values)| !values.is_empty())
+            .map(|(name, components, values)| {
+                Array::real(name, components, values.iter().take(count).flatten().copied())
+            })
+            .collect();
+        let mut point_data: Vec<&Array> = arrays.iter().chain(&of_motion).collect();
         point_data.push(&self.mesh.node_labels);
         let [connectivity, offsets, types] = &self.mesh.topology;
         Grid {
@@ -266,11 +277,19 @@ mod tests {
         use crate::model::{ElementKind, NodeId};
         let mut mesh = Mesh::default();
         let list = |count: u32| (0..count).map(NodeId).collect::<Vec<_>>();
-        for kind in [ElementKind::C3D4].into_iter().chain(ElementKind::CONNECTORS) {
+        let kinds = [
+            (ElementKind::C3D4, 10),
+            (ElementKind::T3D2, 3),
+            (ElementKind::SpringA, 3),
+            (ElementKind::Spring1, 1),
+            (ElementKind::Spring2, 3),
+            (ElementKind::Mass, 1),
+        ];
+        for (kind, _) in kinds {
             mesh.elements.push(kind, &list(kind.node_count() as u32));
         }
-        // VTK_TETRA, then T3D2 and SPRINGA: VTK_LINE, SPRING1: VTK_VERTEX, SPRING2: VTK_LINE, MASS: VTK_VERTEX.
-        assert_eq!(types(&mesh), [10, 3, 3, 1, 3, 1]);
+        // VTK_TETRA, VTK_LINE, VTK_VERTEX.
+        assert_eq!(types(&mesh), kinds.map(|(_, number)| number));
         assert_eq!(offsets(&mesh), [4, 6, 8, 9, 11, 12]);
         assert_eq!(connectivity(&mesh), [0, 1, 2, 3, 0, 1, 0, 1, 0, 0, 1, 0]);
     }

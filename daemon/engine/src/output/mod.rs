@@ -5,6 +5,7 @@
 
 mod components;
 mod contact_table;
+mod due;
 mod fil_record;
 mod file;
 mod frames;
@@ -44,10 +45,11 @@ use crate::simulation::{
 };
 
 use contact_table::ContactTable;
+use due::Moment;
 use frames::Frames;
 use history_table::HistoryTable;
 use node_table::NodeTable;
-use plan::{Moment, Plan};
+use plan::Plan;
 use port_table::PortTable;
 use printed::Printed;
 use results_file::ResultsFile;
@@ -56,7 +58,7 @@ use totals::Resultants;
 
 /// Writes the results of a job into a directory, increment by increment.
 ///
-/// `JOB_history.csv` and `JOB_ports.csv` have one row per increment. The other files follow the output requests of the
+/// `JOB_history.csv` and `JOB_ports.csv` have one row per increment, in explicit steps as `*OUTPUT, HISTORY` says. The other files follow the output requests of the
 /// deck: contact rows and frames of a step that asks for none are written at its last increment. Nodal values are recovered (one solve) at most once per
 /// increment, and only when a row or a frame needs them.
 pub struct ResultWriter {
@@ -140,11 +142,14 @@ impl ResultWriter {
         let Some(step) = step_of(model, increment) else {
             return Ok(());
         };
-        let plan = Plan::new(step, increment.increment, moment);
+        let plan = Plan::new(step, increment, moment);
+        if plan.is_empty() && increment.status_changes.is_empty() {
+            return self.snapshots.write(step, increment, moment, simulation);
+        }
         let history = simulation.history();
         let contact = simulation.contact_results();
         let resultants = Resultants::of_pairs(&prepared, &history.pairs, contact);
-        if moment != Moment::Stopped {
+        if plan.history {
             self.history.row(increment, &history, &resultants)?;
             self.ports.row(increment, simulation)?;
         }

@@ -24,8 +24,8 @@ impl NodeTable {
         Ok(Self { file, written: Vec::new(), write: 0 })
     }
 
-    /// Rotations and moments are those of the reference nodes of rigid bodies; velocities and accelerations do not exist in a
-    /// static solution: empty.
+    /// Rotations and moments are those of the reference nodes of rigid bodies; a static solution has no velocities and
+    /// accelerations: empty.
     pub(super) fn rows(
         &mut self,
         model: &Model,
@@ -52,7 +52,8 @@ impl NodeTable {
                 let turning = model.mesh.rotation_of(*node).map(NodeId::index);
                 push_numbers(&mut text, &solution.displacement[i]);
                 push_or_blank(&mut text, turning.map(|hidden| solution.displacement[hidden]));
-                text.push_str(",,,,,,");
+                push_or_blank(&mut text, solution.velocity.get(i).copied());
+                push_or_blank(&mut text, solution.acceleration.get(i).copied());
                 push_numbers(&mut text, &solution.reaction[i]);
                 push_or_blank(&mut text, turning.map(|hidden| solution.reaction[hidden]));
                 text.push('\n');
@@ -104,6 +105,31 @@ mod tests {
         assert_eq!((at("node"), at("U3"), at("RF3")), ("30", "-1.0000000000000000e0", "8.0000000000000000e0"));
         for absent in ["UR1", "UR3", "V1", "V3", "A1", "A3", "RM1", "RM3"] {
             assert_eq!(at(absent), "", "{absent}");
+        }
+    }
+
+    #[test]
+    fn a_moving_node_has_its_velocity_and_acceleration() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut model = Model::default();
+        (model.mesh.nodes, model.mesh.node_labels) = (vec![[0.0; 3]; 2], vec![10, 20]);
+        model.mesh.node_sets = vec![NodeSet { name: "N".into(), nodes: vec![NodeId(1)] }];
+        let solution = NodalSolution {
+            displacement: vec![[0.0; 3]; 2],
+            velocity: vec![[0.0; 3], [0.5, -0.0, 2.0]],
+            acceleration: vec![[0.0; 3], [-4.0, 8.0, 1e-300]],
+            reaction: vec![[0.0; 3]; 2],
+        };
+        let mut table = NodeTable::create(directory.path(), "job").unwrap();
+        let increment = IncrementReport { step: 1, increment: 1, ..Default::default() };
+        table.rows(&model, &increment, &[SetId(0)], &solution).unwrap();
+        let text = std::fs::read_to_string(directory.path().join("job_nodes.csv")).unwrap();
+        let [header, row] = text.lines().collect::<Vec<_>>()[..] else { panic!("{text}") };
+        let (columns, fields): (Vec<&str>, Vec<&str>) = (header.split(',').collect(), row.split(',').collect());
+        assert_eq!(fields.len(), columns.len());
+        let at = |name: &str| fields[columns.iter().position(|c| *c == name).unwrap()].parse::<f64>().unwrap();
+        for (name, value) in [("V1", 0.5), ("V2", -0.0), ("V3", 2.0), ("A1", -4.0), ("A2", 8.0), ("A3", 1e-300)] {
+            assert_eq!(at(name).to_bits(), f64::to_bits(value), "{name}");
         }
     }
 

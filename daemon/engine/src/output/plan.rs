@@ -1,21 +1,14 @@
 //! What the output requests of a step ask for at one increment.
 
-use crate::model::{ContactRequest, ElementRequest, NodeRequest, OutputTarget, SetId, Step, Totals};
-
-/// When the question is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Moment {
-    /// At an increment with others to follow.
-    Within,
-    /// At the last increment of a step: every request is due.
-    LastOfStep,
-    /// After the last increment of a run that stopped: what is due at a last increment and was not due before.
-    Stopped,
-}
+use super::due::{Moment, Span};
+use crate::model::{ContactRequest, ElementRequest, NodeRequest, OutputTarget, Procedure, SetId, Step, Totals};
+use crate::simulation::IncrementReport;
 
 /// What to write at an increment.
 #[derive(Debug, PartialEq)]
 pub(super) struct Plan<'a> {
+    /// Rows of the history and of the port table.
+    pub history: bool,
     /// Rows of the contact table.
     pub contact_rows: bool,
     /// A frame for ParaView.
@@ -39,20 +32,23 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// What `step` asks for at the increment with this number (from 1).
-    pub(super) fn new(step: &'a Step, increment: u32, moment: Moment) -> Self {
+    /// What `step` asks for at one of its increments.
+    pub(super) fn new(step: &'a Step, report: &IncrementReport, moment: Moment) -> Self {
         let requests = &step.output;
-        let due = |frequency: u32| is_due(frequency, increment, moment);
-        let fields: Vec<u32> = requests
-            .nodes
-            .iter()
-            .map(|r| (r.target, r.frequency))
+        let span = Span::of(step, report);
+        let due = |frequency| span.is_due(frequency, moment);
+        let of_fields =
+            |(target, frequency)| matches!(target, OutputTarget::Field | OutputTarget::File).then_some(frequency);
+        let fields = (requests.nodes.iter().map(|r| (r.target, r.frequency)))
             .chain(requests.elements.iter().map(|r| (r.target, r.frequency)))
             .chain(requests.contacts.iter().map(|r| (r.target, r.frequency)))
-            .filter(|(target, _)| matches!(target, OutputTarget::Field | OutputTarget::File))
-            .map(|(_, frequency)| frequency)
-            .collect();
-        let contact_frequencies: Vec<u32> = requests.contacts.iter().map(|r| r.frequency).collect();
+            .filter_map(of_fields);
+        let history = match step.procedure {
+            Procedure::Explicit(_) if !requests.history.is_empty() => {
+                moment == Moment::LastOfStep || span.any_due(requests.history.iter().copied(), moment)
+            }
+            _ => moment != Moment::Stopped,
+        };
         let mut node_rows = Vec::new();
         for request in requests.nodes.iter().filter(|r| due(r.frequency) && r.totals != Totals::Only) {
             if let Some(set) = request.set
@@ -65,8 +61,9 @@ impl<'a> Plan<'a> {
         let elements = |to| requests.elements.iter().filter(|r| r.target == to && due(r.frequency)).collect();
         let contacts = |to| requests.contacts.iter().filter(|r| r.target == to && due(r.frequency)).collect();
         Self {
-            contact_rows: any_due(&contact_frequencies, increment, moment),
-            frame: any_due(&fields, increment, moment),
+            history,
+            contact_rows: span.any_due(requests.contacts.iter().map(|r| r.frequency), moment),
+            frame: span.any_due(fields, moment),
             node_rows,
             node_prints: nodes(OutputTarget::Print),
             element_prints: elements(OutputTarget::Print),
@@ -76,6 +73,15 @@ impl<'a> Plan<'a> {
             contact_files: contacts(OutputTarget::File),
             end: moment != Moment::Within,
         }
+    }
+
+    /// Whether nothing is due.
+    pub(super) fn is_empty(&self) -> bool {
+        let Self { history, contact_rows, frame, node_rows, end, .. } = self;
+        let tables = [self.node_prints.len(), self.element_prints.len(), self.contact_prints.len()];
+        let records = [self.node_files.len(), self.element_files.len(), self.contact_files.len()];
+        let lists = tables.into_iter().chain(records).chain([node_rows.len()]).sum::<usize>();
+        !history && !contact_rows && !frame && !end && lists == 0
     }
 
     /// Whether nodal values are needed.
@@ -97,31 +103,11 @@ impl<'a> Plan<'a> {
     }
 }
 
-fn is_due(frequency: u32, increment: u32, moment: Moment) -> bool {
-    let regular = frequency != 0 && increment.is_multiple_of(frequency);
-    match moment {
-        Moment::Within => regular,
-        Moment::LastOfStep => frequency != 0,
-        Moment::Stopped => frequency != 0 && !regular,
-    }
-}
-
-/// Whether something that several requests share is due. A step that does not mention it gets it once, at its end.
-fn any_due(frequencies: &[u32], increment: u32, moment: Moment) -> bool {
-    let regular = frequencies.iter().any(|&f| is_due(f, increment, Moment::Within));
-    let wanted = frequencies.is_empty() || frequencies.iter().any(|&f| f != 0);
-    match moment {
-        Moment::Within => regular,
-        Moment::LastOfStep => wanted,
-        Moment::Stopped => wanted && !regular,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::diagnostic::Place;
-    use crate::model::{OutputRequests, Procedure, StaticControl};
+    use crate::model::{ExplicitControl, ExplicitIncrements, OutputFrequency, OutputRequests, StaticControl};
 
     fn step(output: OutputRequests) -> Step {
         let control = StaticControl {
@@ -135,6 +121,7 @@ mod tests {
             name: "Step-1".into(),
             increments_max: 100,
             procedure: Procedure::Static(control),
+            default_amplitude: Default::default(),
             boundaries: Vec::new(),
             loads: Vec::new(),
             loads_removed: Default::default(),
@@ -144,7 +131,14 @@ mod tests {
         }
     }
 
-    fn nodes(target: OutputTarget, set: Option<SetId>, frequency: u32, totals: Totals) -> NodeRequest {
+    /// An increment of a tenth of the step.
+    fn tenth(increment: u32) -> IncrementReport {
+        let step_time = 0.1 * f64::from(increment);
+        IncrementReport { step: 1, increment, step_time, increment_size: 0.1, ..Default::default() }
+    }
+
+    fn nodes(target: OutputTarget, set: Option<SetId>, every: u32, totals: Totals) -> NodeRequest {
+        let frequency = OutputFrequency::Increments(every);
         NodeRequest { target, set, variables: vec!["U".into()], frequency, totals, summary: true }
     }
 
@@ -152,7 +146,7 @@ mod tests {
     fn a_silent_step_writes_contact_and_frame_once_at_its_end() {
         let step = step(OutputRequests::default());
         for (moment, expected) in [(Moment::Within, false), (Moment::LastOfStep, true), (Moment::Stopped, true)] {
-            let plan = Plan::new(&step, 3, moment);
+            let plan = Plan::new(&step, &tenth(3), moment);
             assert_eq!((plan.contact_rows, plan.frame), (expected, expected), "{moment:?}");
         }
     }
@@ -168,7 +162,7 @@ mod tests {
             (5, Moment::Stopped, false),
             (7, Moment::Stopped, true),
         ] {
-            let plan = Plan::new(&step, increment, moment);
+            let plan = Plan::new(&step, &tenth(increment), moment);
             assert_eq!(plan.frame, expected, "{increment} {moment:?}");
             assert_eq!(plan.node_rows, if expected { vec![SetId(2)] } else { vec![] });
         }
@@ -179,7 +173,7 @@ mod tests {
         let request = nodes(OutputTarget::Field, None, 0, Totals::No);
         let step = step(OutputRequests { nodes: vec![request], ..Default::default() });
         for moment in [Moment::Within, Moment::LastOfStep, Moment::Stopped] {
-            assert!(!Plan::new(&step, 1, moment).frame, "{moment:?}");
+            assert!(!Plan::new(&step, &tenth(1), moment).frame, "{moment:?}");
         }
     }
 
@@ -187,8 +181,36 @@ mod tests {
     fn totals_alone_need_no_recovery() {
         let request = nodes(OutputTarget::Print, Some(SetId(0)), 1, Totals::Only);
         let step = step(OutputRequests { nodes: vec![request], ..Default::default() });
-        let plan = Plan::new(&step, 1, Moment::Within);
+        let plan = Plan::new(&step, &tenth(1), Moment::Within);
         assert_eq!(plan.node_prints.len(), 1);
         assert!(!plan.needs_solution());
+    }
+
+    #[test]
+    fn the_history_has_every_increment_unless_an_explicit_step_asks_for_fewer() {
+        let control = ExplicitControl {
+            period: 1.0,
+            increments: ExplicitIncrements::Direct(0.1),
+            increment_max: None,
+            bulk_viscosity: [0.06, 1.2],
+            mass_scaling: Vec::new(),
+        };
+        let rows = |procedure: Procedure, history: &[OutputFrequency]| -> Vec<u32> {
+            let step = Step { procedure, ..step(OutputRequests { history: history.to_vec(), ..Default::default() }) };
+            (1..=10)
+                .filter(|&k| {
+                    let moment = if k == 10 { Moment::LastOfStep } else { Moment::Within };
+                    Plan::new(&step, &tenth(k), moment).history
+                })
+                .collect()
+        };
+        let (thirds, fourth) = (OutputFrequency::Intervals(3), OutputFrequency::Increments(4));
+        let explicit = || Procedure::Explicit(control.clone());
+        assert_eq!(rows(explicit(), &[]), (1..=10).collect::<Vec<_>>());
+        assert_eq!(rows(explicit(), &[thirds]), [4, 7, 10]);
+        assert_eq!(rows(explicit(), &[thirds, fourth]), [4, 7, 8, 10]);
+        assert_eq!(rows(explicit(), &[OutputFrequency::Increments(0)]), [10]);
+        let implicit = step(OutputRequests::default()).procedure;
+        assert_eq!(rows(implicit, &[thirds]).len(), 10);
     }
 }

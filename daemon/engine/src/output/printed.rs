@@ -110,15 +110,23 @@ impl Printed {
                 let solution = &fields.solution;
                 let (own, values, rotations) = match variable.as_str() {
                     "U" => (Some("U"), &solution.displacement, "UR"),
+                    "V" => (Some("V"), &solution.velocity, "VR"),
+                    "A" => (Some("A"), &solution.acceleration, "AR"),
                     "RF" => (Some("RF"), &solution.reaction, "RM"),
                     "UR" => (None, &solution.displacement, "UR"),
+                    "VR" => (None, &solution.velocity, "VR"),
+                    "AR" => (None, &solution.acceleration, "AR"),
                     "RM" => (None, &solution.reaction, "RM"),
                     _ => continue,
                 };
+                // A static step has no velocities and accelerations.
+                if values.is_empty() {
+                    continue;
+                }
                 if let Some(name) = own {
                     print(name, &mut nodes.iter().map(|&node| (node, node)), values);
                 }
-                // Displacements of a reference node have six components, and so has its reaction.
+                // The motion of a reference node has six components, and so has its reaction.
                 let named = request.variables.iter().any(|other| other == rotations);
                 if own.is_none() || (!turning.is_empty() && !named) {
                     print(rotations, &mut turning.iter().copied(), values);

@@ -143,10 +143,15 @@ impl Open {
             }
         };
         let solution = &fields.solution;
-        for (key, names, values) in
-            [(101, ["U", "UR"], &solution.displacement), (104, ["RF", "RM"], &solution.reaction)]
-        {
-            if !request.variables.iter().any(|variable| names.contains(&variable.as_str())) {
+        for (key, names, values) in [
+            (101, ["U", "UR"], &solution.displacement),
+            (102, ["V", "VR"], &solution.velocity),
+            (103, ["A", "AR"], &solution.acceleration),
+            (104, ["RF", "RM"], &solution.reaction),
+        ] {
+            // A static step has no velocities and accelerations.
+            let wanted = request.variables.iter().any(|variable| names.contains(&variable.as_str()));
+            if !wanted || values.is_empty() {
                 continue;
             }
             for &node in nodes {

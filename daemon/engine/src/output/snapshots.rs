@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::due::{Moment, Span};
 use super::file::OutputError;
-use super::plan::Moment;
-use crate::model::{RestartFrequency, RestartRequest, Step};
+use crate::model::{RestartRequest, Step};
 use crate::restart::Standing;
 use crate::simulation::{IncrementReport, Simulation};
 
@@ -57,7 +57,7 @@ impl Snapshots {
         simulation: &Simulation,
     ) -> Result<(), OutputError> {
         let Some(request) = self.request.or(step.output.restart) else { return Ok(()) };
-        if !is_due(request.frequency, increment.increment, moment) {
+        if !Span::of(step, increment).snapshot_is_due(request.frequency, moment) {
             return Ok(());
         }
         let standing = simulation.standing();
@@ -75,19 +75,6 @@ impl Snapshots {
     /// What is there now, in the order of the increments.
     pub(super) fn written(self) -> Vec<SnapshotSummary> {
         self.written
-    }
-}
-
-/// The last increment of a step is always due, and so is the last one of a run that stops: that is where it goes on.
-fn is_due(frequency: RestartFrequency, increment: u32, moment: Moment) -> bool {
-    let regular = match frequency {
-        RestartFrequency::Increments(every) => increment.is_multiple_of(every),
-        RestartFrequency::StepEnd => false,
-    };
-    match moment {
-        Moment::Within => regular,
-        Moment::LastOfStep => true,
-        Moment::Stopped => !regular,
     }
 }
 
@@ -128,23 +115,6 @@ fn is_snapshot(name: &str, job: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_ends_of_step_and_run_are_always_due() {
-        let (third, end) = (RestartFrequency::Increments(3), RestartFrequency::StepEnd);
-        for (frequency, increment, moment, expected) in [
-            (third, 2, Moment::Within, false),
-            (third, 3, Moment::Within, true),
-            (third, 4, Moment::LastOfStep, true),
-            (third, 4, Moment::Stopped, true),
-            (third, 6, Moment::Stopped, false),
-            (end, 3, Moment::Within, false),
-            (end, 3, Moment::LastOfStep, true),
-            (end, 3, Moment::Stopped, true),
-        ] {
-            assert_eq!(is_due(frequency, increment, moment), expected, "{frequency:?} {increment} {moment:?}");
-        }
-    }
 
     #[test]
     fn only_snapshots_of_the_job_are_removed() {

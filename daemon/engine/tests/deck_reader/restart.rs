@@ -47,12 +47,22 @@ fn calculix_counts_steps() {
 }
 
 #[test]
+fn parts_of_the_step_are_counted_in_both_dialects() {
+    let thirds = Some(RestartRequest { frequency: RestartFrequency::Intervals(3), overlay: false });
+    for dialect in [Dialect::Abaqus, Dialect::Calculix] {
+        assert_eq!(requests("*RESTART, WRITE, NUMBER INTERVAL=3\n", "", dialect), [thirds; 3]);
+    }
+}
+
+#[test]
 fn what_is_no_request_for_snapshots_is_refused() {
     let in_step = |card: &str| with("*END STEP", &format!("{card}*END STEP"));
     refuses(&in_step("*RESTART\n"), "*RESTART", "WRITE is missing");
     refuses(&in_step("*RESTART, WRITE, FREQUENCY=often\n"), "*RESTART", "not a whole number");
     refuses(&in_step("*RESTART, WRITE\n5\n"), "*RESTART", "takes no data lines");
-    warns(&in_step("*RESTART, WRITE, NUMBER INTERVAL=3\n"), "*RESTART", "NUMBER INTERVAL is ignored");
+    warns(&in_step("*RESTART, WRITE, NUMBER INTERVAL=3, TIME MARKS=YES\n"), "*RESTART", "TIME MARKS=YES is ignored");
+    refuses(&in_step("*RESTART, WRITE, NUMBER INTERVAL=0\n"), "*RESTART", "not a whole number above 0");
+    refuses(&in_step("*RESTART, WRITE, NUMBER INTERVAL=2, FREQUENCY=2\n"), "*RESTART", "exclude each other");
     let reading = format!("*RESTART, READ, STEP=2, INC=5\n{BASE}");
     refuses(&reading, "*RESTART", "READ is not supported");
     let found = read(&reading).diagnostics;

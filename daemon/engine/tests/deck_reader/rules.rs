@@ -509,10 +509,10 @@ fn output_requests_are_read() {
     let output = &model.steps[0].output;
     let nodes: Vec<_> = output.nodes.iter().map(|r| (r.target, r.set, r.variables.join(" "), r.frequency)).collect();
     let expected = [
-        (OutputTarget::Print, Some(SetId(2)), "RF".to_string(), 1),
-        (OutputTarget::File, None, "U".to_string(), 5),
-        (OutputTarget::Field, None, "U RF".to_string(), 2),
-        (OutputTarget::History, Some(SetId(2)), "RF".to_string(), 1),
+        (OutputTarget::Print, Some(SetId(2)), "RF".to_string(), OutputFrequency::Increments(1)),
+        (OutputTarget::File, None, "U".to_string(), OutputFrequency::Increments(5)),
+        (OutputTarget::Field, None, "U RF".to_string(), OutputFrequency::Increments(2)),
+        (OutputTarget::History, Some(SetId(2)), "RF".to_string(), OutputFrequency::Increments(1)),
     ];
     assert_eq!(nodes, expected);
     assert_eq!(

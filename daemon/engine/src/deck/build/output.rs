@@ -1,17 +1,18 @@
 //! Output requests. They hold from step to step until a step asks anew for the same kind.
 
+mod frequency;
 mod variables;
 
 use crate::model::{
-    ContactRequest, Dialect, ElementRequest, NodeRequest, OutputRequests, OutputTarget, RestartFrequency,
-    RestartRequest, SetId, SurfaceId, Totals,
+    ContactRequest, Dialect, ElementRequest, NodeRequest, OutputFrequency, OutputRequests, OutputTarget, SetId,
+    SurfaceId, Totals,
 };
 
 use super::super::card::Card;
-use super::super::report::excerpt;
 use super::Builder;
 use super::layout::StepCards;
-use variables::{Subject, variables};
+use frequency::{Snapshots, default_of};
+use variables::{Procedure, Subject, variables};
 
 /// The three ways to ask.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -28,24 +29,18 @@ pub struct Requests {
     nodes: Vec<(Family, NodeRequest)>,
     elements: Vec<(Family, ElementRequest)>,
     contacts: Vec<(Family, ContactRequest)>,
+    /// `*OUTPUT, HISTORY`.
+    history: Vec<OutputFrequency>,
     snapshots: Option<Snapshots>,
-}
-
-/// The `*RESTART, WRITE` in force.
-#[derive(Clone, Copy)]
-struct Snapshots {
-    /// Every how many increments, or every how many steps.
-    frequency: u32,
-    overlay: bool,
-    /// Steps since the request, this one included.
-    steps: u32,
+    /// Procedure of the present step.
+    procedure: Procedure,
 }
 
 /// A contact request without selection.
 const ALL_PAIRS: ContactRequest = ContactRequest {
     target: OutputTarget::Field,
     variables: Vec::new(),
-    frequency: 1,
+    frequency: OutputFrequency::EVERY,
     secondary: None,
     primary: None,
     nodes: None,
@@ -57,7 +52,7 @@ const ALL_PAIRS: ContactRequest = ContactRequest {
 #[derive(Clone, Copy)]
 struct Database {
     target: OutputTarget,
-    frequency: u32,
+    frequency: OutputFrequency,
 }
 
 impl Requests {
@@ -67,7 +62,8 @@ impl Requests {
             nodes: self.nodes.iter().map(|(_, request)| request.clone()).collect(),
             elements: self.elements.iter().map(|(_, request)| request.clone()).collect(),
             contacts: self.contacts.iter().map(|(_, request)| request.clone()).collect(),
-            restart: self.snapshots.and_then(|snapshots| snapshots.in_step(dialect)),
+            history: self.history.clone(),
+            restart: self.snapshots.and_then(|snapshots| snapshots.in_step(dialect, self.procedure == Procedure::Explicit)),
         }
     }
 
@@ -85,15 +81,14 @@ impl Requests {
     }
 }
 
-impl Snapshots {
-    /// What the request means in this step: Abaqus counts increments, CalculiX counts steps.
-    fn in_step(self, dialect: Dialect) -> Option<RestartRequest> {
-        let frequency = match dialect {
-            Dialect::Abaqus => RestartFrequency::Increments(self.frequency),
-            Dialect::Calculix if self.steps.is_multiple_of(self.frequency) => RestartFrequency::StepEnd,
-            Dialect::Calculix => return None,
-        };
-        Some(RestartRequest { frequency, overlay: self.overlay })
+impl Procedure {
+    fn of(step: &StepCards<'_>) -> Self {
+        let is_dynamic = step.cards.iter().any(|card| card.keyword.name == "*DYNAMIC");
+        match (step.is_explicit(), is_dynamic) {
+            (true, _) => Self::Explicit,
+            (false, true) => Self::Implicit,
+            (false, false) => Self::Static,
+        }
     }
 }
 
@@ -108,9 +103,7 @@ impl Builder<'_> {
             self.report.error(card.at, card.keyword.name, "parameter WRITE is missing", remedy);
             return;
         }
-        let frequency = self.frequency(card);
-        let overlay = card.parameters.has("OVERLAY");
-        requests.snapshots = (frequency > 0).then_some(Snapshots { frequency, overlay, steps: 0 });
+        requests.snapshots = self.snapshots(card);
     }
 
     /// Takes the requests of a step into those in force.
@@ -119,8 +112,11 @@ impl Builder<'_> {
             self.restart_request(card, requests);
         }
         if let Some(snapshots) = &mut requests.snapshots {
-            snapshots.steps += 1;
+            snapshots.enter_step();
         }
+        requests.procedure = Procedure::of(step);
+        let explicit = requests.procedure == Procedure::Explicit;
+        let mut file = default_of(OutputTarget::File, explicit);
         let mut database = None;
         let mut database_begun = false;
         let mut begun: Vec<(Family, Subject)> = Vec::new();
@@ -131,9 +127,15 @@ impl Builder<'_> {
                         for subject in [Subject::Nodes, Subject::Elements, Subject::Contacts] {
                             requests.clear(Family::Database, subject);
                         }
+                        requests.history.clear();
                     }
                     database_begun = true;
                     database = Some(self.database(card, requests));
+                    continue;
+                }
+                "*FILE OUTPUT" => {
+                    // Abaqus/Explicit writes its results file at the end of the step unless told otherwise.
+                    file = self.stated_frequency(card).unwrap_or(OutputFrequency::Intervals(1));
                     continue;
                 }
                 "*NODE PRINT" => (Family::Print, Subject::Nodes),
@@ -148,8 +150,11 @@ impl Builder<'_> {
                 _ => continue,
             };
             let (target, frequency) = match (family, database) {
-                (Family::Print, _) => (OutputTarget::Print, self.frequency(card)),
-                (Family::File, _) => (OutputTarget::File, self.frequency(card)),
+                (Family::Print, _) => {
+                    let default = default_of(OutputTarget::Print, explicit);
+                    (OutputTarget::Print, self.stated_frequency(card).unwrap_or(default))
+                }
+                (Family::File, _) => (OutputTarget::File, self.stated_frequency(card).unwrap_or(file)),
                 (Family::Database, Some(database)) => (database.target, database.frequency),
                 (Family::Database, None) => {
                     self.report.warning(
@@ -158,7 +163,7 @@ impl Builder<'_> {
                         "there is no *OUTPUT above it: read as field output",
                         "write *OUTPUT, FIELD above it",
                     );
-                    (OutputTarget::Field, 1)
+                    (OutputTarget::Field, default_of(OutputTarget::Field, explicit))
                 }
             };
             if family != Family::Database && !begun.contains(&(family, subject)) {
@@ -174,10 +179,10 @@ impl Builder<'_> {
         card: &Card,
         (family, subject): (Family, Subject),
         target: OutputTarget,
-        frequency: u32,
+        frequency: OutputFrequency,
         requests: &mut Requests,
     ) {
-        let variables = variables(card, subject, self.report);
+        let variables = variables(card, subject, requests.procedure, self.report);
         if variables.is_empty() {
             return;
         }
@@ -254,20 +259,6 @@ impl Builder<'_> {
         }
     }
 
-    fn frequency(&mut self, card: &Card) -> u32 {
-        let Some(text) = card.parameters.value("FREQUENCY") else { return 1 };
-        text.parse().unwrap_or_else(|_| {
-            let message = format!("FREQUENCY={} is not a whole number", excerpt(text.as_bytes()));
-            self.report.error(
-                card.at,
-                card.keyword.name,
-                message,
-                "write every how many increments to write, 0 for never",
-            );
-            1
-        })
-    }
-
     fn database(&mut self, card: &Card, requests: &mut Requests) -> Database {
         let target = match (card.parameters.has("FIELD"), card.parameters.has("HISTORY")) {
             (false, true) => OutputTarget::History,
@@ -277,13 +268,18 @@ impl Builder<'_> {
             }
             _ => OutputTarget::Field,
         };
-        let frequency = self.frequency(card);
+        let procedure = requests.procedure;
+        let default = default_of(target, procedure == Procedure::Explicit);
+        let frequency = self.stated_frequency(card).unwrap_or(default);
+        if target == OutputTarget::History {
+            requests.history.push(frequency);
+        }
         if card.parameters.has("VARIABLE") && target == OutputTarget::Field {
             let (family, target) = (Family::Database, OutputTarget::Field);
             let node = NodeRequest {
                 target,
                 set: None,
-                variables: Subject::Nodes.preselected(),
+                variables: Subject::Nodes.preselected(procedure),
                 frequency,
                 totals: Totals::No,
                 summary: true,
@@ -291,11 +287,11 @@ impl Builder<'_> {
             let element = ElementRequest {
                 target,
                 set: None,
-                variables: Subject::Elements.preselected(),
+                variables: Subject::Elements.preselected(procedure),
                 frequency,
                 summary: true,
             };
-            let contact = ContactRequest { target, variables: Subject::Contacts.preselected(), frequency, ..ALL_PAIRS };
+            let contact = ContactRequest { target, variables: Subject::Contacts.preselected(procedure), frequency, ..ALL_PAIRS };
             requests.nodes.push((family, node));
             requests.elements.push((family, element));
             requests.contacts.push((family, contact));

@@ -15,6 +15,15 @@ pub enum Subject {
     Contacts,
 }
 
+/// The procedure of the step that a request stands in: what it offers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Procedure {
+    #[default]
+    Static,
+    Implicit,
+    Explicit,
+}
+
 /// What becomes of an identifier.
 enum Meaning {
     /// These variables are written.
@@ -82,10 +91,13 @@ const CONTACT_OTHERS: &[&str] = &[
     "CTHICK",
 ];
 
-const THREE_DIMENSIONAL: &str = "CMN, CMS and CMT give the moments about the origin";
-const LEAVE_OUT: &str = "leave it out: a *STATIC step has no such result";
+/// Contact variables that Abaqus/Explicit alone offers; they are not written.
+const OF_EXPLICIT: &[&str] = &["FSLIP", "FSLIPR", "FSLIPEQ", "FSLIP1", "FSLIP2", "FSLIPR1", "FSLIPR2"];
 
-/// Contact variables that a static step of deformable solids does not offer: identifiers, whose they are, what to do.
+const THREE_DIMENSIONAL: &str = "CMN, CMS and CMT give the moments about the origin";
+const LEAVE_OUT: &str = "leave it out: steps of elastic bodies have no such result";
+
+/// Contact variables that steps of elastic bodies do not offer: identifiers, whose they are, what to do.
 const NOT_OFFERED: &[(&[&str], &str, &str)] = &[
     (&["CTRQ", "CPPRESSTRQ"], "axisymmetric models offer it, and this one is three-dimensional", THREE_DIMENSIONAL),
     (
@@ -107,24 +119,35 @@ const NOT_OFFERED: &[(&[&str], &str, &str)] = &[
     (&["CSDMG", "CSMAXSCRT", "CSMAXUCRT", "CSQUADSCRT", "CSQUADUCRT"], "cohesive contact offers it", LEAVE_OUT),
     (&["PPRESS"], "steps with *PRESSURE PENETRATION offer it", LEAVE_OUT),
     (&["SDV"], "user-defined interactions offer it", LEAVE_OUT),
-    (
-        &["FSLIP", "FSLIPR", "FSLIPEQ", "FSLIP1", "FSLIP2", "FSLIPR1", "FSLIPR2"],
-        "Abaqus/Explicit offers it",
-        "CSLIP1 and CSLIP2 (CDISP) are the slip in Abaqus/Standard",
-    ),
+    (OF_EXPLICIT, "Abaqus/Explicit offers it", "CSLIP1 and CSLIP2 (CDISP) are the slip in Abaqus/Standard"),
     (&["BONDSTAT", "BONDLOAD"], "Abaqus/Explicit offers it", LEAVE_OUT),
 ];
 
-const NODE: &[Written] =
-    &[("U", &["U"]), ("UT", &["U"]), ("UR", &["UR"]), ("RF", &["RF"]), ("RT", &["RF"]), ("RM", &["RM"])];
+const NODE: &[Written] = &[
+    ("U", &["U"]),
+    ("UT", &["U"]),
+    ("UR", &["UR"]),
+    ("V", &["V"]),
+    ("VT", &["V"]),
+    ("VR", &["VR"]),
+    ("A", &["A"]),
+    ("AT", &["A"]),
+    ("AR", &["AR"]),
+    ("RF", &["RF"]),
+    ("RT", &["RF"]),
+    ("RM", &["RM"]),
+];
+
+/// Nodal variables that only dynamic steps have.
+const OF_MOTION: &[&str] = &["V", "VR", "A", "AR"];
 
 /// Nodal variables of Abaqus and CalculiX that exist and are not written.
 const NODE_OTHERS: &[&str] = &[
-    "V", "VT", "VR", "A", "AT", "AR", "CF", "CM", "COORD", "COOR", "TF", "VF", "PU", "PUR", "PHPOT", "NT", "RFL",
-    "RFLE", "CFL", "EPOT", "POR", "PPOR", "TU", "TV", "TA", "GU", "GV", "GA", "MOT", "RVF", "RVT", "CECHG", "RCHG",
-    "CECUR", "RECUR", "PABS", "PCAV", "CVOL", "PRF", "WARP", "NNC", "FILMCOEF", "SINKTEMP", "RBANG", "RBROT", "PN",
-    "PNT", "PT", "PS", "PSF", "TT", "TS", "TTF", "TSF", "MF", "CP", "DEPT", "DEPF", "KEQ", "MAXU", "MACH", "POT",
-    "SEN", "SF", "TURB", "VTF", "RFN", "BM", "STH", "CT",
+    "CF", "CM", "COORD", "COOR", "TF", "VF", "PU", "PUR", "PHPOT", "NT", "RFL", "RFLE", "CFL", "EPOT", "POR", "PPOR",
+    "TU", "TV", "TA", "GU", "GV", "GA", "MOT", "RVF", "RVT", "CECHG", "RCHG", "CECUR", "RECUR", "PABS", "PCAV", "CVOL",
+    "PRF", "WARP", "NNC", "FILMCOEF", "SINKTEMP", "RBANG", "RBROT", "PN", "PNT", "PT", "PS", "PSF", "TT", "TS", "TTF",
+    "TSF", "MF", "CP", "DEPT", "DEPF", "KEQ", "MAXU", "MACH", "POT", "SEN", "SF", "TURB", "VTF", "RFN", "BM", "STH",
+    "CT",
 ];
 
 const ELEMENT: &[Written] = &[("S", &["S"]), ("MISES", &["S"]), ("E", &["E"])];
@@ -293,8 +316,9 @@ impl Subject {
     }
 
     /// What a request without variables, PRESELECT and ALL mean.
-    pub fn preselected(self) -> Vec<String> {
+    pub fn preselected(self, procedure: Procedure) -> Vec<String> {
         let names: &[&str] = match self {
+            Self::Nodes if procedure != Procedure::Static => &["U", "V", "A", "RF"],
             Self::Nodes => &["U", "RF"],
             Self::Elements => &["S"],
             Self::Contacts => &["CPRESS", "CSHEAR1", "CSHEAR2", "COPEN", "CSLIP1", "CSLIP2"],
@@ -302,10 +326,12 @@ impl Subject {
         names.iter().map(|name| name.to_string()).collect()
     }
 
-    fn meaning(self, word: &str) -> Meaning {
-        // U4 to U6 are rotations and RF4 to RF6 moments.
+    fn meaning(self, word: &str, procedure: Procedure) -> Meaning {
+        // U4 to U6 are rotations, V4 to V6 and A4 to A6 their rates, and RF4 to RF6 moments.
         match (self, word) {
             (Self::Nodes, "U4" | "U5" | "U6") => return Meaning::Written(vec!["UR"]),
+            (Self::Nodes, "V4" | "V5" | "V6") => return Meaning::Written(vec!["VR"]),
+            (Self::Nodes, "A4" | "A5" | "A6") => return Meaning::Written(vec!["AR"]),
             (Self::Nodes, "RF4" | "RF5" | "RF6") => return Meaning::Written(vec!["RM"]),
             _ => {}
         }
@@ -315,6 +341,9 @@ impl Subject {
         let magnitude = word.strip_suffix('M').filter(|family| family.len() == 3 && family.starts_with('C'));
         if let Some((_, names)) = find(word).or_else(|| find(family)).or_else(|| find(magnitude?)) {
             return Meaning::Written(names.to_vec());
+        }
+        if self == Self::Contacts && procedure == Procedure::Explicit && OF_EXPLICIT.contains(&word) {
+            return Meaning::NotWritten;
         }
         if self == Self::Contacts
             && let Some((_, whose, remedy)) =
@@ -330,7 +359,7 @@ impl Subject {
 }
 
 /// Variables of a request that are written; others are reported.
-pub fn variables(card: &Card, subject: Subject, report: &mut Report) -> Vec<String> {
+pub fn variables(card: &Card, subject: Subject, procedure: Procedure, report: &mut Report) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut named = false;
     for line in card.lines().iter() {
@@ -338,11 +367,17 @@ pub fn variables(card: &Card, subject: Subject, report: &mut Report) -> Vec<Stri
             named = true;
             let word = key(&String::from_utf8_lossy(field));
             if matches!(word.as_str(), "PRESELECT" | "ALL") {
-                found.extend(subject.preselected());
+                found.extend(subject.preselected(procedure));
                 continue;
             }
             let known = || subject.written().iter().map(|(name, _)| *name);
-            match subject.meaning(&word) {
+            match subject.meaning(&word, procedure) {
+                Meaning::Written(names) if procedure == Procedure::Static && OF_MOTION.contains(&names[0]) => {
+                    let message = format!("{} is not written: a static step has no such result", excerpt(field));
+                    report.warning(line.at, card.keyword.name, message, "ask for it in a dynamic step");
+                    // The request may hold on in a dynamic step.
+                    found.extend(names.iter().map(|name| name.to_string()));
+                }
                 Meaning::Written(names) => found.extend(names.iter().map(|name| name.to_string())),
                 Meaning::NotWritten => {
                     let remedy = format!("variables are {}", known().collect::<Vec<_>>().join(", "));
@@ -367,7 +402,7 @@ pub fn variables(card: &Card, subject: Subject, report: &mut Report) -> Vec<Stri
         if subject != Subject::Contacts && !card.parameters.has("VARIABLE") {
             report.warning(card.at, card.keyword.name, "the request names no variables", "list them on a data line");
         } else {
-            found = subject.preselected();
+            found = subject.preselected(procedure);
         }
     }
     let mut once: Vec<String> = Vec::new();
@@ -384,7 +419,7 @@ mod tests {
     use super::*;
 
     fn written(subject: Subject, word: &str) -> Vec<&'static str> {
-        match subject.meaning(word) {
+        match subject.meaning(word, Procedure::Static) {
             Meaning::Written(names) => names,
             Meaning::NotWritten | Meaning::NotOffered(..) | Meaning::Unknown => Vec::new(),
         }
@@ -408,6 +443,11 @@ mod tests {
         assert_eq!(written(Subject::Nodes, "U3"), ["U"]);
         assert_eq!(written(Subject::Nodes, "U5"), ["UR"]);
         assert_eq!(written(Subject::Nodes, "RM1"), ["RM"]);
+        assert_eq!(written(Subject::Nodes, "V2"), ["V"]);
+        assert_eq!(written(Subject::Nodes, "VT3"), ["V"]);
+        assert_eq!(written(Subject::Nodes, "V6"), ["VR"]);
+        assert_eq!(written(Subject::Nodes, "A1"), ["A"]);
+        assert_eq!(written(Subject::Nodes, "AR2"), ["AR"]);
         assert_eq!(written(Subject::Elements, "S12"), ["S"]);
     }
 
@@ -415,13 +455,16 @@ mod tests {
     fn every_identifier_has_one_meaning() {
         for subject in [Subject::Nodes, Subject::Elements, Subject::Contacts] {
             for name in subject.others() {
-                assert!(matches!(subject.meaning(name), Meaning::NotWritten), "{name}");
+                assert!(matches!(subject.meaning(name, Procedure::Static), Meaning::NotWritten), "{name}");
             }
         }
         for name in NOT_OFFERED.iter().flat_map(|(names, ..)| *names) {
-            assert!(matches!(Subject::Contacts.meaning(name), Meaning::NotOffered(..)), "{name}");
+            assert!(matches!(Subject::Contacts.meaning(name, Procedure::Static), Meaning::NotOffered(..)), "{name}");
         }
-        assert!(matches!(Subject::Contacts.meaning("CPRES"), Meaning::Unknown));
-        assert!(matches!(Subject::Nodes.meaning("CPRESS"), Meaning::Unknown));
+        for name in OF_EXPLICIT {
+            assert!(matches!(Subject::Contacts.meaning(name, Procedure::Explicit), Meaning::NotWritten), "{name}");
+        }
+        assert!(matches!(Subject::Contacts.meaning("CPRES", Procedure::Static), Meaning::Unknown));
+        assert!(matches!(Subject::Nodes.meaning("CPRESS", Procedure::Implicit), Meaning::Unknown));
     }
 }
