@@ -5,7 +5,7 @@
 //! ```
 
 use super::elasticity::Elasticity;
-use super::matrix::{Stiffness, block_index};
+use super::matrix::{Coordinates, Stiffness, block_index};
 use super::table::{Sample, Table};
 use crate::model::ELEMENT_NODES_MAX;
 
@@ -107,4 +107,17 @@ pub fn nodal_volumes(table: &Table, coordinates: &[[f64; 3]]) -> Vec<f64> {
         }
     }
     out
+}
+
+/// Mean of ∇N_a over the points of the stiffness [1/length], and the volume [length³].
+pub fn mean_gradient(table: &Table, coordinates: &[[f64; 3]]) -> (Coordinates, f64) {
+    let (mut sum, mut volume) = ([[0.0; 3]; ELEMENT_NODES_MAX], 0.0);
+    for sample in &table.points {
+        let p = point(sample, coordinates);
+        volume += p.volume;
+        for (s, g) in sum.as_flattened_mut().iter_mut().zip(p.gradient.as_flattened()) {
+            *s += p.volume * g;
+        }
+    }
+    (Coordinates::of(sum[..table.count].iter().map(|s| s.map(|x| x / volume))), volume)
 }

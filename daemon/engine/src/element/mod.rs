@@ -7,6 +7,10 @@ pub mod connector;
 pub mod connector_mass;
 #[cfg(test)]
 mod convergence_tests;
+#[allow(dead_code)] // Until dynamic steps use all of it.
+pub mod dilatation;
+#[cfg(test)]
+mod dilatation_tests;
 mod elasticity;
 pub mod face;
 mod hexahedron;
@@ -17,6 +21,10 @@ pub mod mass;
 mod mass_tests;
 mod matrix;
 pub mod quad;
+#[allow(dead_code)] // Until dynamic steps use all of it.
+pub mod stable;
+#[cfg(test)]
+mod stable_tests;
 mod table;
 #[cfg(test)]
 mod tests;
