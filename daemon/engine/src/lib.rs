@@ -18,6 +18,7 @@ mod condensation;
 mod examination;
 mod fields;
 mod fingerprint;
+mod implicit;
 mod kept;
 mod nodal;
 mod observe;
@@ -42,6 +43,8 @@ mod analytical_tests;
 mod column_tests;
 #[cfg(test)]
 mod gap_tests;
+#[cfg(test)]
+mod implicit_tests;
 #[cfg(test)]
 mod load_pattern_tests;
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 use crate::contact::points::ContactPoint;
 use crate::model::NodeId;
+use crate::solve::columns::Column;
 use crate::solve::constraints::Constraints;
 
 /// Position of a direction of a node in a flattened nodal vector.
@@ -92,4 +93,37 @@ impl Nodal {
             }
         }
     }
+}
+
+/// Adds the displacements of columns with these coefficients.
+pub fn place(columns: &[Column], coefficients: &[f64], out: &mut [[f64; 3]]) {
+    for (column, a) in columns.iter().zip(coefficients) {
+        if let Column::Displacement(entries) = column {
+            for &(node, d, value) in entries {
+                out[node.index()][usize::from(d)] += a * value;
+            }
+        }
+    }
+}
+
+/// Nodal forces of columns with these coefficients, in place of what `out` holds.
+pub fn load(columns: &[Column], coefficients: &[f64], out: &mut [[f64; 3]]) {
+    out.fill([0.0; 3]);
+    for (column, a) in columns.iter().zip(coefficients).filter(|(_, a)| **a != 0.0) {
+        if let Column::Force(entries) = column {
+            for &(node, d, value) in entries {
+                out[node.index()][usize::from(d)] += a * value;
+            }
+        }
+    }
+}
+
+/// `x · y`.
+pub fn dot(x: &[[f64; 3]], y: &[[f64; 3]]) -> f64 {
+    x.as_flattened().iter().zip(y.as_flattened()).map(|(a, b)| a * b).sum()
+}
+
+/// Largest entry.
+pub fn largest(x: &[[f64; 3]]) -> f64 {
+    x.as_flattened().iter().fold(0.0, |m, a| a.abs().max(m))
 }

@@ -9,6 +9,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::element::{Elasticity, connector};
 use crate::examination::{self, Examined};
 use crate::fingerprint::fingerprint;
+use crate::implicit::ImplicitModel;
 use crate::model::{Connector, ElementId, Equation, Model};
 use crate::nodal::Nodal;
 use crate::outputs::{Outputs, Source};
@@ -21,7 +22,7 @@ use crate::solve::assembly::{coordinates, elasticities};
 use crate::solve::budget::Budget;
 use crate::solve::columns::Column;
 use crate::solve::constraints::Constraints;
-use crate::solve::context::Context;
+use crate::solve::context::{Blend, Context};
 use crate::solve::floating::Floating;
 use crate::solve::motions::Motions;
 use crate::solve::numbering::Bodies;
@@ -48,6 +49,8 @@ pub struct PreparedModel {
     pub(crate) statics: Option<Statics>,
     /// Elements with a prescribed direction: they carry the reactions.
     pub(crate) support_elements: Vec<u32>,
+    /// What implicit dynamic steps need; none without one.
+    pub(crate) implicit: Option<ImplicitModel>,
     /// What dynamic steps need; none without one.
     pub(crate) nodal: Option<Nodal>,
     /// Every column: those that carry loads, then those that only measure.
@@ -92,6 +95,7 @@ impl PreparedModel {
             local: &bodies.local,
             points: &row_points,
             columns: &columns,
+            blend: Blend::STIFFNESS,
         };
         let fingerprint = fingerprint(&model);
         let setting = Setting {
@@ -106,6 +110,7 @@ impl PreparedModel {
             false => None,
             true => Some(Statics::prepare(&context, &setting, options, fingerprint, announce)?),
         };
+        let implicit = ImplicitModel::new(&context, &bodies, options.path, options.memory_limit);
         let nodal =
             model.has_dynamics().then(|| Nodal::new(&constraints, &row_points, points.len(), model.mesh.nodes.len()));
         let all = PortList { inputs: loading.inputs.clone(), outputs: outputs.ports.clone() };
@@ -147,6 +152,7 @@ impl PreparedModel {
             floating,
             elasticities,
             statics,
+            implicit,
             nodal,
             support_elements,
             columns,
@@ -219,6 +225,7 @@ impl PreparedModel {
             budget,
             points: &self.row_points,
             columns: &self.loading.columns,
+            blend: Blend::STIFFNESS,
         }
     }
 
@@ -231,6 +238,16 @@ impl PreparedModel {
     pub(crate) fn factorizations(&self) -> u32 {
         let factored = |statics: &Statics| statics.bodies.iter().filter(|b| b.was_factored()).count() as u32;
         self.statics.as_ref().map_or(0, factored)
+    }
+
+    /// What implicit dynamic steps need.
+    pub(crate) fn implicit(&self) -> &ImplicitModel {
+        self.implicit.as_ref().expect("only implicit dynamic steps ask, and a deck that has one prepares for them")
+    }
+
+    /// A body in words.
+    pub(crate) fn name_of_body(&self, body: usize) -> String {
+        examination::body_name(&self.model, &self.numbering.nodes[body], &self.numbering.elements[body])
     }
 
     /// What dynamic steps need.

@@ -8,6 +8,7 @@ pub use crate::results::*;
 
 use crate::fingerprint::fingerprint;
 use crate::model::Model;
+use crate::procedure::implicit::ImplicitWork;
 use crate::procedure::loading::Course;
 use crate::procedure::modified_hard::Verdict;
 use crate::solve::contact::{ContactSolver, Row};
@@ -39,6 +40,8 @@ pub struct Simulation {
     /// Of static steps.
     pub(crate) solver: Option<ContactSolver>,
     pub(crate) work: Work,
+    /// Of implicit dynamic steps.
+    pub(crate) implicit: ImplicitWork,
     pub(crate) derived: Derived,
     /// Input of each real column, if it is one.
     input_of_column: Vec<Option<usize>>,
@@ -177,7 +180,11 @@ impl Simulation {
         };
         let derived = Derived { overclosures: vec![0.0; n], relief: vec![0.0; n], ..Derived::default() };
         let solver = prepared.statics.as_ref().map(|statics| ContactSolver::new(&statics.contact));
-        let mut simulation = Self { prepared, state, solver, work, derived, input_of_column, step_starts };
+        let implicit = match prepared.implicit {
+            Some(_) => ImplicitWork::new(prepared.model.mesh.nodes.len()),
+            None => ImplicitWork::default(),
+        };
+        let mut simulation = Self { prepared, state, solver, work, implicit, derived, input_of_column, step_starts };
         simulation.begin_motion();
         simulation.recompute();
         simulation

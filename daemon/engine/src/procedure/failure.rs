@@ -14,8 +14,12 @@ pub(crate) enum Failure {
     Slid(Vec<u32>),
     /// Numbers that are none.
     Overflow,
-    /// An increment of a procedure that is not solved yet.
-    Unsolved(f64),
+    /// Hard contact changes too often in one increment.
+    Events,
+    /// A matrix without inverse, in words.
+    Singular(String),
+    /// The residual half-way through an increment and what it may be \[force\].
+    HalfIncrement { residual: f64, tolerance: f64 },
 }
 
 impl Failure {
@@ -23,7 +27,7 @@ impl Failure {
     pub fn is_final(&self) -> bool {
         matches!(
             self,
-            Failure::Slid(_) | Failure::Overflow | Failure::Unsolved(_) | Failure::Solve(SolveFailure::Unheld { .. })
+            Failure::Slid(_) | Failure::Overflow | Failure::Singular(_) | Failure::Solve(SolveFailure::Unheld { .. })
         )
     }
 
@@ -51,7 +55,13 @@ impl Failure {
             Failure::Overflow => {
                 format!("{after}: the solution leaves the range of numbers; an input is too large for this model")
             }
-            Failure::Unsolved(size) => format!("{after}: implicit increments of {size} are not solved yet"),
+            Failure::Events => format!(
+                "{after}: points of hard contact keep closing and opening at one time; smaller increments or a softened law may help"
+            ),
+            Failure::Singular(words) => format!("{after}: {words}"),
+            Failure::HalfIncrement { residual, tolerance } => format!(
+                "{after}: forces half-way through the increment are out of balance by {residual:e}, more than {tolerance:e}; a larger HAFTOL or a smaller least increment lets it pass"
+            ),
             Failure::Slid(points) => format!(
                 "{after}: a secondary node slides beyond half a face of the primary surface, which small sliding does not cover: node {}",
                 list(points)

@@ -143,7 +143,7 @@ impl Simulation {
         let found = |(counts, changes)| Found { counts, changes, easy: true, event: None };
         match self.state.motion {
             None => self.attempt_static(end, interval).map(found),
-            Some(_) => Err(Failure::Unsolved(size)),
+            Some(_) => self.attempt_dynamic(end, size, interval),
         }
     }
 
@@ -153,7 +153,7 @@ impl Simulation {
         let exact = end - self.state.step_time;
         let nominal = if control.direct { control.increment_initial } else { self.state.increment_next };
         let same = !clipped && (exact - nominal).abs() <= SIZE_ROUNDING * nominal;
-        if same { nominal } else { f64::from_bits((exact.to_bits() + HALF_KEPT) & !(2 * HALF_KEPT - 1)) }
+        if same { nominal } else { rounded(exact) }
     }
 
     fn begin_interval(&mut self, target: f64, tolerance: f64) -> Interval {
@@ -285,6 +285,11 @@ impl Simulation {
             status_changes,
         }
     }
+}
+
+/// A length of time with 40 of its 52 binary digits.
+pub(crate) fn rounded(size: f64) -> f64 {
+    f64::from_bits((size.to_bits() + HALF_KEPT) & !(2 * HALF_KEPT - 1))
 }
 
 /// End of the next increment, and whether the end of the step or of the request cut it short of the proposed one.

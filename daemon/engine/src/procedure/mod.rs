@@ -1,7 +1,10 @@
 //! Procedures: how time advances through the steps of a deck.
 
+mod accept;
 pub mod enforcement;
 mod failure;
+mod impact;
+pub mod implicit;
 pub mod interference;
 pub mod interval;
 pub mod loading;
@@ -9,4 +12,5 @@ pub mod modified_hard;
 pub mod motion;
 mod removal;
 pub mod rows;
+mod settle;
 pub mod statics;

@@ -39,6 +39,8 @@ impl Simulation {
             }
         };
         motion.rates_start.clone_from(&motion.rates);
+        // Not begun yet.
+        motion.increment_last = 0.0;
         self.state.motion = Some(motion);
     }
 }

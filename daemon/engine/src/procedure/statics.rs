@@ -6,10 +6,6 @@ use crate::procedure::interference;
 use crate::procedure::interval::Interval;
 use crate::simulation::{Simulation, StatusChange};
 use crate::solve::condensed::Response;
-use crate::solve::contact::Wall;
-
-/// Part of a face that a closed point may slide before small sliding no longer describes it.
-const SLIDING_MAX: f64 = 0.5;
 
 impl Simulation {
     /// Tries to find equilibrium at a step time; the state changes only on success.
@@ -67,14 +63,7 @@ impl Simulation {
             &mut work.scratch,
             &mut work.tangential,
         );
-        let (points, n) = (prepared.points.len(), prepared.rows.count());
-        let slid: Vec<u32> = (0..points)
-            .filter(|&i| {
-                work.closed[i]
-                    && slid_by(work.tangential[i], work.tangential[n + i]) > SLIDING_MAX * prepared.points[i].face_size
-            })
-            .map(|i| i as u32)
-            .collect();
+        let slid = self.slid();
         if !slid.is_empty() {
             self.work.coefficients = coefficients;
             return Err(Failure::Slid(slid));
@@ -103,32 +92,9 @@ impl Simulation {
     /// Makes the solution in the work space the state.
     fn accept(&mut self, time: f64, coefficients: Vec<f64>) -> Vec<StatusChange> {
         let prepared = self.prepared.clone();
-        let (points, n) = (prepared.points.len(), prepared.rows.count());
         let moment = Self::moment(&prepared, self.state.step as usize, time);
+        self.keep_statuses(&moment);
         let (state, work) = (&mut self.state, &mut self.work);
-        for i in 0..points {
-            state.latched[i] |= work.closed[i] && moment.latches(i) && moment.is_active(i);
-            // Sticking under rough friction is what the tangential rows say.
-            state.stuck[i] = false;
-            if moment.penetration_max(i).is_some() {
-                state.penetrations[i] = work.penetrations[i];
-            }
-        }
-        for (row, tangential) in work.rows[points..].iter().zip(&prepared.rows.tangential) {
-            state.stuck[tangential.point as usize] |= row.wall == Wall::TwoSided;
-        }
-        for i in 0..points {
-            if work.closed[i] && !state.stuck[i] {
-                for at in [i, n + i] {
-                    state.slip[at] += work.tangential[at] - state.tangential[at];
-                }
-            }
-            // A point that does not stick would begin to where it is.
-            if !state.stuck[i] {
-                state.origins[i] = work.tangential[i];
-                state.origins[points + i] = work.tangential[n + i];
-            }
-        }
         // A dashpot dissipates its force times what the increment moved it: backward Euler.
         for (i, row) in work.rows.iter().enumerate() {
             state.viscous[i] = row.viscous_force(work.overclosures[i]);
@@ -153,11 +119,7 @@ impl Simulation {
         std::mem::swap(&mut state.multipliers, &mut work.multipliers);
         work.coefficients = std::mem::replace(&mut state.coefficients, coefficients);
         state.step_time = time;
-        let change = |i: usize| {
-            let (from, to) = (self.derived.points[i].status, self.status(&moment, i));
-            (from != to).then_some(StatusChange { point: i as u32, from, to })
-        };
-        (0..points).filter_map(change).collect()
+        self.status_changes()
     }
 
     /// Overclosures without contact forces into the work space, less those that are allowed at a step time.
@@ -174,9 +136,4 @@ impl Simulation {
             &mut self.work.free,
         );
     }
-}
-
-/// Length of a tangential displacement from its components [length].
-fn slid_by(first: f64, second: f64) -> f64 {
-    (first * first + second * second).sqrt()
 }

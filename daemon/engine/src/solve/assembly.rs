@@ -28,6 +28,16 @@ impl LowerMatrix {
         range.start + at
     }
 
+    /// Gives diagonal entries that are zero a part of the largest one.
+    pub fn fill_diagonal(&mut self, part: f64) {
+        let small = part * self.diagonal().fold(0.0, f64::max);
+        for &start in &self.starts[..self.len()] {
+            if self.values[start] == 0.0 {
+                self.values[start] = small;
+            }
+        }
+    }
+
     /// Diagonal entries: the first of each column.
     pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
         self.starts[..self.len()].iter().map(|&s| self.values[s])
@@ -111,7 +121,7 @@ pub fn assemble(context: &Context<'_>, elements: &[u32], layout: &Layout<'_>) ->
     let mut nodes = Vec::new();
     let mut constrained = Vec::new();
     for &e in elements {
-        element_stiffness(model, context.elasticities, e, &mut k);
+        context.element_matrix(e, &mut k);
         if layout.reach.is_extended(e) {
             constrained.push(e);
             continue;
@@ -121,6 +131,10 @@ pub fn assemble(context: &Context<'_>, elements: &[u32], layout: &Layout<'_>) ->
         for a in 0..nodes.len() {
             for b in a..nodes.len() {
                 let block = k.block(a, b);
+                // Lumped masses couple nothing: the pattern may have no room for it.
+                if a != b && block.iter().all(|&x| x == 0.0) {
+                    continue;
+                }
                 let (pa, pb) = (position[nodes[a] as usize], position[nodes[b] as usize]);
                 // The earlier node owns the columns. `transposed`: block rows belong to the earlier node's columns.
                 let (first, second, transposed) = if pa <= pb { (a, b, false) } else { (b, a, true) };
@@ -172,7 +186,7 @@ pub fn assemble(context: &Context<'_>, elements: &[u32], layout: &Layout<'_>) ->
 /// Adds `Tᵀ K T` of an element with dependent nodes.
 fn add_constrained(context: &Context<'_>, layout: &Layout<'_>, element: u32, matrix: &mut LowerMatrix) {
     let mut k = Stiffness::default();
-    element_stiffness(context.model, context.elasticities, element, &mut k);
+    context.element_matrix(element, &mut k);
     let nodes = context.model.mesh.elements.nodes(element as usize);
     // Unknowns of each direction of the element, with factors.
     let mut shares: Vec<Vec<(usize, f64)>> = vec![Vec::new(); 3 * nodes.len()];

@@ -10,7 +10,8 @@ use super::lazy::LazyFactor;
 use super::linear::{Dense, Factor, SingularPivot, Symbolic};
 use super::motions::Motions;
 use super::numbering::{NOT_FREE, NodeGraph, Reach};
-use super::{ordering, reactions};
+use super::plan::BodyPlan;
+use super::reactions;
 use crate::contact::points::ContactPoint;
 use crate::model::NodeId;
 use crate::simulation::Phase;
@@ -74,6 +75,9 @@ pub enum BodyError {
     Memory(Shortage),
 }
 
+/// Diagonal of a direction without mass, relative to the largest of the body: next to nothing.
+const MASSLESS: f64 = 1e-9;
+
 impl Body {
     /// Assembles, orders and factors a body; condenses it unless `condense` is false.
     pub fn prepare(
@@ -86,57 +90,54 @@ impl Body {
         announce: &mut dyn FnMut(Phase),
     ) -> Result<(Self, BodyContribution), BodyError> {
         announce(Phase::Order);
-        let reach = Reach::new(&context.model.mesh, elements, context.constraints);
-        let graph = NodeGraph::new(&reach, nodes, elements, context.local);
         let is_free = |node: usize, direction: usize| context.constraints.is_free(nodes[node], direction);
         // Holding the anchors makes the stiffness regular; on loads in balance they carry nothing.
-        let mut held = vec![0u8; nodes.len()];
-        for (node, direction) in motions.anchors(is_free) {
-            held[node] |= 1 << direction;
-        }
-        let retained = if condense { retained_nodes(context, nodes, &body_points) } else { Vec::new() };
-        let order = ordering::order(&graph, &retained);
-        let mut unknowns = vec![[NOT_FREE; 3]; nodes.len()];
-        let (mut count, mut interior) = (0usize, 0usize);
-        for (position, &node) in order.iter().enumerate() {
-            if position == order.len() - retained.len() {
-                interior = count;
-            }
-            for direction in 0..3 {
-                if is_free(node as usize, direction) && held[node as usize] & (1 << direction) == 0 {
-                    unknowns[node as usize][direction] = count as u32;
-                    count += 1;
-                }
-            }
-        }
-        if retained.is_empty() {
-            interior = count;
-        }
+        let anchors = motions.anchors(is_free);
+        let plan = BodyPlan::new(context, nodes, elements, &anchors, body_points, condense);
+        Self::prepare_by(context, nodes, elements, &plan, announce)
+    }
+
+    /// The same with numbering and pattern that are known, for matrices of one pattern.
+    pub fn prepare_by(
+        context: &Context<'_>,
+        nodes: &[NodeId],
+        elements: &[u32],
+        plan: &BodyPlan,
+        announce: &mut dyn FnMut(Phase),
+    ) -> Result<(Self, BodyContribution), BodyError> {
+        let BodyPlan { order, unknowns, count, interior, points, condense, symbolic } = plan;
+        let (count, interior, condense) = (*count, *interior, *condense);
         announce(Phase::Assemble);
-        let layout = Layout { reach: &reach, graph: &graph, order: &order, unknowns: &unknowns, count };
-        let matrix = assembly::assemble(context, elements, &layout);
+        let reach = Reach::new(&context.model.mesh, elements, context.constraints);
+        let graph = plan.graph(context, &reach, nodes, elements);
+        let layout = Layout { reach: &reach, graph: &graph, order, unknowns, count };
+        let mut matrix = assembly::assemble(context, elements, &layout);
+        if context.blend.stiffness == 0.0 {
+            matrix.fill_diagonal(MASSLESS);
+        }
         let factor = if count == 0 {
             None
         } else {
             announce(Phase::Symbolic);
-            let symbolic = Symbolic::analyse(&matrix);
-            let condensed = if condense { condensed_numbers(count - interior, body_points.len()) } else { 0 };
+            let symbolic = symbolic.get_or_init(|| Symbolic::analyse(&matrix));
+            let condensed = if condense { condensed_numbers(count - interior, points.len()) } else { 0 };
             let columns = 2 * count * context.columns.len();
             let numbers = symbolic.size().values + 2 * matrix.values.len() + condensed + columns;
             context.budget.take(numbers).map_err(BodyError::Memory)?;
             announce(Phase::Numeric);
-            let factor = Factor::new(&matrix, symbolic).map_err(|pivot| no_stiffness(nodes, &unknowns, pivot))?;
+            let factor =
+                Factor::new(&matrix, symbolic.clone()).map_err(|pivot| no_stiffness(nodes, unknowns, pivot))?;
             Some(LazyFactor::computed(factor))
         };
         drop(matrix);
         announce(Phase::Condense);
         let mut body = Self {
             nodes: nodes.to_vec(),
-            unknowns,
+            unknowns: unknowns.clone(),
             count,
             interior,
             factor,
-            points: body_points,
+            points: points.clone(),
             rows: None,
             spread: Dense::default(),
             columns: Dense::default(),
@@ -374,6 +375,67 @@ impl Body {
         }
         self.columns.multiply_add(coefficients, &mut contact.values);
         contact.values
+    }
+
+    /// The first half of a solve for nodal forces: `L⁻¹ f`, and what the forces do to the overclosures of this body's points,
+    /// added to `overclosures`. Forces on dependent directions must have been moved to independent ones.
+    pub fn begin_solve(&self, forces: &[[f64; 3]], overclosures: &mut [f64], half: &mut Dense) {
+        half.rows = self.count;
+        half.columns = 1;
+        half.values.clear();
+        half.values.resize(self.count, 0.0);
+        for (node, directions) in self.nodes.iter().zip(&self.unknowns) {
+            for (&unknown, &force) in directions.iter().zip(&forces[node.index()]) {
+                if unknown != NOT_FREE {
+                    half.values[unknown as usize] = force;
+                }
+            }
+        }
+        let Some(factor) = self.factor_in_memory() else { return };
+        if let Some(rows) = &self.rows {
+            factor.solve(half);
+            for (row, &p) in rows.normals.iter().zip(&self.points) {
+                overclosures[p as usize] += row.iter().map(|&(i, v)| v * half.values[i as usize]).sum::<f64>();
+            }
+            return;
+        }
+        factor.solve_lower(half);
+        let retained = &half.values[self.interior..];
+        for (k, &p) in self.points.iter().enumerate() {
+            overclosures[p as usize] += self.spread.column(k).iter().zip(retained).map(|(y, x)| y * x).sum::<f64>();
+        }
+    }
+
+    /// The second half: displacements of the free directions under these forces and contact forces, into `out`.
+    pub fn end_solve(&self, contact: &[f64], half: &mut Dense, out: &mut [[f64; 3]]) {
+        let Some(factor) = self.factor_in_memory() else { return };
+        if let Some(rows) = &self.rows {
+            let mut pushed = Dense::zeros(self.count, 1);
+            for (row, &p) in rows.normals.iter().zip(&self.points) {
+                row.iter().for_each(|&(i, v)| pushed.values[i as usize] += v * contact[p as usize]);
+            }
+            if pushed.values.iter().any(|&x| x != 0.0) {
+                factor.solve(&mut pushed);
+                half.values.iter_mut().zip(&pushed.values).for_each(|(u, v)| *u -= v);
+            }
+        } else {
+            for (k, &p) in self.points.iter().enumerate() {
+                let force = contact[p as usize];
+                if force != 0.0 {
+                    for (x, y) in half.values[self.interior..].iter_mut().zip(self.spread.column(k)) {
+                        *x -= force * y;
+                    }
+                }
+            }
+            factor.solve_transposed(half);
+        }
+        for (node, directions) in self.nodes.iter().zip(&self.unknowns) {
+            for (&unknown, u) in directions.iter().zip(&mut out[node.index()]) {
+                if unknown != NOT_FREE {
+                    *u = half.values[unknown as usize];
+                }
+            }
+        }
     }
 
     /// The factor, unless it is on disk or there is none.

@@ -3,7 +3,7 @@
 use super::assembly::{coordinates, element_stiffness};
 use crate::element::connector_mass::{self, Attachment};
 use crate::element::{Elasticity, Stiffness, basis, mass};
-use crate::model::{ElementId, ElementKind, MassMatrix, Material, Model};
+use crate::model::{Connector, ElementId, ElementKind, MassMatrix, Material, Model, Rayleigh};
 
 /// Whether the mass of elements of a kind is attached to each node alone.
 pub fn lumps(kind: ElementKind, matrix: MassMatrix) -> bool {
@@ -12,6 +12,17 @@ pub fn lumps(kind: ElementKind, matrix: MassMatrix) -> bool {
         MassMatrix::Consistent => false,
         MassMatrix::ByOrder => basis::edges(kind.shape()).is_empty(),
     }
+}
+
+/// Whether an element has a damping matrix.
+pub fn damps(model: &Model, element: u32) -> bool {
+    let section = model.mesh.connectors.get(&ElementId(element));
+    let connector = match section {
+        Some(Connector::Dashpot { coefficient, .. }) => *coefficient != 0.0,
+        Some(Connector::Mass { alpha, .. } | Connector::RotaryInertia { alpha, .. }) => *alpha != 0.0,
+        Some(Connector::Bar { .. } | Connector::Spring { .. } | Connector::Inert) | None => false,
+    };
+    connector || material(model, element).is_some_and(|m| m.damping != Rayleigh::default())
 }
 
 /// Material of an element; none for springs, dashpots, point masses and what is inert.

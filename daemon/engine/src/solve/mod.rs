@@ -25,6 +25,7 @@ pub mod motions;
 pub mod numbering;
 mod ordering;
 pub mod parts;
+pub mod plan;
 pub mod reactions;
 mod rigid;
 pub mod sparse;

@@ -31,6 +31,17 @@ pub struct Motions {
 }
 
 impl Motions {
+    /// None: of a body that its inertia holds.
+    pub fn none() -> Self {
+        Self {
+            rows: Dense::default(),
+            parameters: Dense::default(),
+            parts: Parts::default(),
+            centroid: [0.0; 3],
+            size: 1.0,
+        }
+    }
+
     /// Free motions of a body; `local` maps nodes to body-local numbers.
     pub fn find(model: &Model, constraints: &Constraints, nodes: &[NodeId], elements: &[u32], local: &[u32]) -> Self {
         let mesh = &model.mesh;

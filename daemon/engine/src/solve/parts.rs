@@ -11,6 +11,7 @@ use crate::solve::numbering::Unions;
 const COLLINEAR: f64 = 1e-8;
 
 /// Parts of one body.
+#[derive(Default)]
 pub struct Parts {
     /// First parameter of each part; one more than there are parts. Solids have three translations and three rotations.
     pub offsets: Vec<usize>,

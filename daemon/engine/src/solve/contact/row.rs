@@ -121,10 +121,15 @@ impl Row {
 
     /// Pressure, slope and energy of the curve alone.
     pub fn law(&self, behaviors: &[NormalBehavior], overclosure: f64) -> LawPoint {
+        self.law_of(|index| &behaviors[index], overclosure)
+    }
+
+    /// The same with behaviours from anywhere.
+    pub fn law_of<'a>(&self, behavior: impl Fn(usize) -> &'a NormalBehavior, overclosure: f64) -> LawPoint {
         match self.curve {
             Curve::None => LawPoint::default(),
             Curve::Penalty(penalty) => penalty.evaluate(overclosure),
-            Curve::Law(index) => match &behaviors[index as usize] {
+            Curve::Law(index) => match behavior(index as usize) {
                 NormalBehavior::Softened(law) => law.evaluate(overclosure),
                 NormalBehavior::Hard => LawPoint::default(),
             },

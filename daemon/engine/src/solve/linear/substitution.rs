@@ -18,6 +18,11 @@ impl Factor {
         self.backward(rhs, &mut scratch);
     }
 
+    /// `rhs <- L⁻¹ rhs`.
+    pub fn solve_lower(&self, rhs: &mut Dense) {
+        self.forward(rhs, &mut self.scratch(rhs));
+    }
+
     /// `rhs <- L⁻ᵀ rhs`.
     pub fn solve_transposed(&self, rhs: &mut Dense) {
         self.backward(rhs, &mut self.scratch(rhs));
