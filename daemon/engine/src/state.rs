@@ -47,6 +47,8 @@ pub struct Motion {
     pub rates_start: Vec<f64>,
     /// Size of the last increment \[time\]; 0 before the first.
     pub increment_last: f64,
+    /// Events in a row that ended their increments.
+    pub located: u32,
     /// Largest force so far \[force\]: what half-increment residuals are compared with.
     pub force_max: f64,
     /// ETOTAL at the start of the step, and the largest energy since \[energy\].

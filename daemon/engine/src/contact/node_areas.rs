@@ -3,7 +3,7 @@
 //! CalculiX lets such a node stand for its share of every outer face of a solid at the node, faces that look away from the primary
 //! surface included: the area of the face over the number of its corners. Measured with CalculiX 2.20 on bricks (distorted ones too)
 //! and tetrahedra. What it takes at faces with midside nodes is no share of their area (a hundredth of it at corners), so nothing is
-//! said about those.
+//! said about those. A node that is on no solid stands for the primary face under it (`PrimarySurface::area_at`).
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,29 @@ use crate::model::{ElementId, Mesh, NodeId};
 /// Corners of a face in ascending order; a triangle ends with a node that no mesh has.
 type FaceKey = [NodeId; 4];
 
-/// Area of each node [length²], in the order of `nodes`; none where a node has no outer face, or one with midside nodes.
-pub fn of_outer_faces(mesh: &Mesh, nodes: &[NodeId]) -> Vec<Option<f64>> {
+/// What a node has of outer faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Share {
+    /// A share of their area \[length²\].
+    Area(f64),
+    /// Faces with midside nodes.
+    Midside,
+    /// None.
+    Nothing,
+}
+
+impl Share {
+    /// The area, if it is known.
+    pub fn area(self) -> Option<f64> {
+        match self {
+            Self::Area(area) => Some(area),
+            Self::Midside | Self::Nothing => None,
+        }
+    }
+}
+
+/// Share of each node, in the order of `nodes`.
+pub fn of_outer_faces(mesh: &Mesh, nodes: &[NodeId]) -> Vec<Share> {
     let mut wanted = vec![false; mesh.nodes.len()];
     for node in nodes {
         wanted[node.index()] = true;
@@ -48,18 +69,18 @@ pub fn of_outer_faces(mesh: &Mesh, nodes: &[NodeId]) -> Vec<Option<f64>> {
             entry.elements += 1;
         }
     }
-    let mut areas = vec![Some(0.0); mesh.nodes.len()];
+    let mut shares = vec![Share::Nothing; mesh.nodes.len()];
     for outer in faces.values().filter(|f| f.elements == 1) {
         for node in &outer.nodes {
-            let area = &mut areas[node.index()];
-            *area = if outer.nodes.len() > outer.corners {
-                None
-            } else {
-                area.map(|a| a + outer.area / outer.corners as f64)
+            let share = &mut shares[node.index()];
+            *share = match *share {
+                _ if outer.nodes.len() > outer.corners => Share::Midside,
+                Share::Midside => Share::Midside,
+                before => Share::Area(before.area().unwrap_or(0.0) + outer.area / outer.corners as f64),
             };
         }
     }
-    nodes.iter().map(|n| areas[n.index()].filter(|&a| a > 0.0)).collect()
+    nodes.iter().map(|n| shares[n.index()]).collect()
 }
 
 /// A face at a wanted node.

@@ -4,6 +4,7 @@
 
 use super::primary::{Hold, Lever, Primary};
 use super::search::Query;
+use super::secondary::Secondaries;
 use super::underlying::Underlying;
 use super::{adjust, gap_points, secondary};
 use crate::diagnostic::Diagnostic;
@@ -109,7 +110,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         let primary = Primary::new(mesh, kind, &mesh.analytical);
         let stiffness = secondary::Stiffness::new(&underlying, surfaces.secondary);
         let length = secondary::characteristic_length(model, surfaces);
-        let (secondaries, unknown) = secondary::of_pair(model, pair.interaction, surfaces);
+        let Secondaries { all: secondaries, mut unknown, bare } = secondary::of_pair(model, pair.interaction, surfaces);
         let total = secondaries.len();
         let (mut lost, mut deep) = (Vec::new(), Vec::new());
         for (node, area, vector) in secondaries {
@@ -134,6 +135,12 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
                 if clearance < -surfaces.hcrit.unwrap_or(OVERLAP_MAX * critical) {
                     deep.push(label);
                 }
+                let bare = bare.binary_search(&node).is_ok();
+                let under = if bare { primary.area_at(&anchor) } else { None };
+                if bare && under.is_none() && unknown.last() != Some(&label) {
+                    unknown.push(label);
+                }
+                let area = under.unwrap_or(area);
                 let shown = vector.filter(|_| several).map(|v| dot(v, anchor.normal).abs());
                 let area = shown.unwrap_or(area);
                 let Hold { nodes, weights, lever } = primary.hold(mesh, &model.rigid_bodies, &anchor);
@@ -168,7 +175,7 @@ pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
         };
         warn(
             &unknown,
-            "have no outer faces without midside nodes, from which CalculiX takes the area of a node, and stand for 1",
+            "have midside nodes on their outer faces, or are on no solid and meet an analytical surface: CalculiX takes the area of a node from faces without, and these stand for 1",
             "give the area on the data line of *SURFACE INTERACTION",
         );
         warn(

@@ -78,6 +78,14 @@ impl<'a> Primary<'a> {
         }
     }
 
+    /// Area of the face at an anchor, from the Jacobian there \[length²\]; none on analytical surfaces.
+    pub fn area_at(&self, anchor: &Anchor) -> Option<f64> {
+        match self {
+            Self::Faces(_, surface) => Some(surface.area_at(anchor)),
+            Self::Analytical(_) => None,
+        }
+    }
+
     /// Length over which the normal of an anchor holds: the size of its face; of an analytical surface `length`, of a plane no end.
     pub fn reach(&self, anchor: &Anchor, length: f64) -> f64 {
         match self {

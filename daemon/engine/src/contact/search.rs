@@ -111,6 +111,11 @@ impl PrimarySurface {
         self.sizes[face as usize]
     }
 
+    /// Area of an anchor's face by the Jacobian there \[length²\].
+    pub fn area_at(&self, anchor: &Anchor) -> f64 {
+        face::area_by(&self.coordinates[anchor.face as usize], anchor.natural)
+    }
+
     /// Anchors of a secondary node: the nearest first.
     pub fn anchors(&self, mesh: &Mesh, query: Query) -> Vec<Anchor> {
         let position = mesh.nodes[query.node.index()];

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::node_areas;
+use super::node_areas::{self, Share};
 use super::underlying::{Underlying, face_area};
 use crate::element::{Coordinates, connector, face};
 use crate::model::{Dialect, ElementId, InteractionId, Mesh, Model, NodeId, SurfaceId, SurfaceKind, SurfacePair};
@@ -43,22 +43,34 @@ pub fn nodes(mesh: &Mesh, kind: &SurfaceKind, node_area: f64) -> Vec<Secondary> 
     all
 }
 
-/// Secondary nodes of a pair with their areas as the dialect has them, and the labels of those whose area it leaves open.
-pub fn of_pair(model: &Model, interaction: InteractionId, pair: &SurfacePair) -> (Vec<Secondary>, Vec<u32>) {
+/// Secondary nodes of a pair.
+pub struct Secondaries {
+    /// With their areas as the dialect has them.
+    pub all: Vec<Secondary>,
+    /// Labels of those whose area the dialect leaves open.
+    pub unknown: Vec<u32>,
+    /// Those that stand for the primary face under them, ascending.
+    pub bare: Vec<NodeId>,
+}
+
+/// Secondary nodes of a pair.
+pub fn of_pair(model: &Model, interaction: InteractionId, pair: &SurfacePair) -> Secondaries {
     let mesh = &model.mesh;
     let kind = &mesh.surfaces[pair.secondary.index()].kind;
     let given = model.interactions[interaction.index()].node_area;
     let mut secondaries = nodes(mesh, kind, given.unwrap_or(1.0));
-    let mut unknown = Vec::new();
+    let (mut unknown, mut bare) = (Vec::new(), Vec::new());
     if let (SurfaceKind::Nodes(nodes), None, Dialect::Calculix) = (kind, given, model.dialect) {
         for ((node, area, _), share) in secondaries.iter_mut().zip(node_areas::of_outer_faces(mesh, nodes)) {
             match share {
-                Some(share) => *area = share,
-                None => unknown.push(mesh.node_labels[node.index()]),
+                Share::Area(share) => *area = share,
+                Share::Midside => unknown.push(mesh.node_labels[node.index()]),
+                Share::Nothing => bare.push(*node),
             }
         }
     }
-    (secondaries, unknown)
+    bare.sort_unstable();
+    Secondaries { all: secondaries, unknown, bare }
 }
 
 fn length(mesh: &Mesh, bar: ElementId) -> f64 {
@@ -81,7 +93,7 @@ pub fn characteristic_length(model: &Model, pair: &SurfacePair) -> f64 {
         }
         (SurfaceKind::Bars(bars), _) => mean(&mut bars.iter().map(|&bar| length(mesh, bar))),
         (SurfaceKind::Nodes(nodes), _) => {
-            mean(&mut node_areas::of_outer_faces(mesh, nodes).into_iter().flatten().map(f64::sqrt))
+            mean(&mut node_areas::of_outer_faces(mesh, nodes).into_iter().filter_map(Share::area).map(f64::sqrt))
         }
         (SurfaceKind::Analytical(_), _) => None,
     };

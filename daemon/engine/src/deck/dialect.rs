@@ -109,8 +109,8 @@ const DIFFERENCES: &[Difference] = &[
     follows(
         "*SURFACE INTERACTION without an area, secondary surface of nodes",
         "each node stands for 1",
-        "each node stands for its share of every outer face of a solid at it: the area of the face over the number of its corners",
-        "as CalculiX; a node without such faces, or with midside nodes on them, stands for 1, with a warning",
+        "each node stands for its share of every outer face of a solid at it: the area of the face over the number of its corners; a node on no solid stands for the primary face under it",
+        "as CalculiX; a node with midside nodes on its faces stands for 1, with a warning",
     ),
     departs("*CONTACT PAIR without TYPE", "node-to-surface", "the run stops", "node-to-surface"),
     departs(

@@ -131,6 +131,13 @@ fn place(nodes: &[[f64; 3]], natural: [f64; 2]) -> Place {
     out
 }
 
+/// Area of a face as the Jacobian at one place has it: of a flat parallelogram or triangle the area everywhere [length²].
+pub fn area_by(nodes: &[[f64; 3]], natural: [f64; 2]) -> f64 {
+    let [first, second] = place(nodes, natural).tangents;
+    let natural_area = if corners(nodes.len()).len() == 4 { 4.0 } else { 0.5 };
+    natural_area * quad::norm(quad::cross(first, second))
+}
+
 /// Integration points of a face: enough for shape functions times area vectors of curved faces.
 fn rule(count: usize) -> Vec<([f64; 2], f64)> {
     if corners(count).len() == 4 {

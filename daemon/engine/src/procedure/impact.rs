@@ -27,6 +27,9 @@ const PLACE_ROUNDING: f64 = 1e-14;
 /// Tension or impulse, relative to the largest force, that is rounding.
 const FORCE_ROUNDING: f64 = 1e-11;
 
+/// Openings of one point at one time: one that closes again and again stays closed for an increment, though it may pull.
+const OPENINGS_MAX: u8 = 2;
+
 /// What hard contact is about to do.
 pub(crate) struct Upcoming {
     /// When, as a part of the increment.
@@ -51,7 +54,8 @@ impl Simulation {
         for i in (0..prepared.points.len()).filter(|&i| is_hard(&moment, i)) {
             let closed = work.rows[i].wall == Wall::TwoSided;
             let multiplier = weight * work.forces[i];
-            if closed && !state.latched[i] && multiplier < -FORCE_ROUNDING * scale {
+            let may_open = !state.latched[i] && self.implicit.openings[i] < OPENINGS_MAX;
+            if closed && may_open && multiplier < -FORCE_ROUNDING * scale {
                 let before = state.forces[i].max(0.0);
                 event.fraction += before / (before - multiplier);
                 event.opening.push(i as u32);
@@ -72,6 +76,7 @@ impl Simulation {
         let moment = Self::moment(&prepared, self.state.step as usize, self.state.step_time);
         counts.solves.severe_discontinuity_iterations += 1;
         for &i in &event.opening {
+            self.implicit.openings[i as usize] += 1;
             self.open(i as usize);
         }
         for &i in &event.closing {

@@ -13,8 +13,10 @@ use crate::procedure::interference;
 use crate::procedure::interval::{Event, Found, Interval, rounded};
 use crate::simulation::Simulation;
 
-/// Events in one increment, most of them at its start, before it is given up.
-const EVENTS_MAX: usize = 20;
+/// Events at one time before an increment is given up.
+const EVENTS_MAX: usize = 1000;
+/// Events in a row that are located in time. Those that still follow happen at the start of their increment.
+const LOCATED_MAX: u32 = 20;
 
 /// Work space of implicit increments: nodal vectors.
 #[derive(Default)]
@@ -27,6 +29,8 @@ pub(crate) struct ImplicitWork {
     /// Forces on the way.
     pub force: Vec<[f64; 3]>,
     pub change: Vec<[f64; 3]>,
+    /// How often each point has opened in the attempt.
+    pub openings: Vec<u8>,
     /// Loads at the start and at the end of the increment.
     pub loads: [Vec<[f64; 3]>; 2],
 }
@@ -70,6 +74,8 @@ impl Simulation {
         }
         let begun = self.state.step_time;
         let mut event = None;
+        self.implicit.openings.clear();
+        self.implicit.openings.resize(self.prepared.points.len(), 0);
         // New inputs at the same time act from now on: a motion does not jump.
         let mut easy = true;
         for tried in 0.. {
@@ -83,14 +89,17 @@ impl Simulation {
             let Some(found) = self.next_event() else {
                 easy = self.check_half_increment(end, size, interval)?;
                 self.accept_motion(end, size)?;
+                self.count_located(|_| 0);
                 break;
             };
             let located = rounded(found.fraction * size);
+            let so_far = self.state.motion.as_ref().map_or(0, |motion| motion.located);
             // Before the first moment that can be told from the start nothing has moved.
-            let moves = located > interval.tolerance && begun + located > begun;
+            let moves = located > interval.tolerance && begun + located > begun && so_far < LOCATED_MAX;
             if moves {
                 self.trial(begun + located, located, interval, &mut counts)?;
                 self.accept_motion(begun + located, located)?;
+                self.count_located(|before| before + 1);
             }
             let kind = self.change_contact(&found, &mut counts)?;
             event = if event == Some(Event::Impact) { event } else { Some(kind) };
@@ -100,6 +109,11 @@ impl Simulation {
         }
         let changes = self.status_changes();
         Ok(Found { counts, changes, easy, event })
+    }
+
+    fn count_located(&mut self, next: impl Fn(u32) -> u32) {
+        let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
+        motion.located = next(motion.located);
     }
 
     /// Solves an increment with the statuses of hard contact at its start; the result is in the work space.
