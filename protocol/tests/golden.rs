@@ -20,6 +20,7 @@ fn counts() -> Counts {
         cutbacks: 1,
         factorizations: 0,
         augmentations: 9,
+        impacts: 2,
     }
 }
 

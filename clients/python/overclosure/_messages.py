@@ -238,7 +238,21 @@ class OpenRequest:
     deck: String
 
 
-QUANTITIES = ("length", "force", "pressure", "acceleration", "area", "energy", "time", "count", "angle", "moment")
+QUANTITIES = (
+    "length",
+    "force",
+    "pressure",
+    "acceleration",
+    "area",
+    "energy",
+    "time",
+    "count",
+    "angle",
+    "moment",
+    "velocity",
+    "angular_velocity",
+    "angular_acceleration",
+)
 
 
 @dataclass
@@ -298,13 +312,14 @@ class Counts:
     cutbacks: U32
     factorizations: U32
     augmentations: U32
+    impacts: U32
 
 
 @dataclass
 class StepReply:
     """Result of a step."""
 
-    SCHEMA: ClassVar = Schema("StepReply", 2)
+    SCHEMA: ClassVar = Schema("StepReply", 3)
     sequence: U64
     status: Annotated[str, Choice("reached", "stopped", "increment_limit", "cancelled")]
     reason: String
@@ -404,7 +419,7 @@ class StepSummary:
 class Report:
     """Steps so far, work and findings."""
 
-    SCHEMA: ClassVar = Schema("Report", 2)
+    SCHEMA: ClassVar = Schema("Report", 3)
     session: String
     sequence_next: U64
     time: F64

@@ -12,8 +12,9 @@ use crate::solve::reactions;
 /// Stress (11, 22, 33, 12, 13, 23) at the integration points of an element [pressure].
 pub type ElementStress = Vec<[f64; 6]>;
 
-/// Fields that [`Simulation::field`] knows.
+/// Fields that [`Simulation::field`] knows in every step, and those of dynamic steps.
 const FIELDS: &str = "U, UR, RF, RM, S, CPRESS, CSHEAR, CDPRESS, CDSHEAR, COPEN, CSLIP, CSTATUS";
+const FIELDS_OF_MOTION: &str = "V, VR, A, AR";
 
 impl Simulation {
     /// Displacements and reactions of all nodes: one backward solve per body.
@@ -195,6 +196,15 @@ impl Simulation {
             values,
         };
         let points = &self.derived.points;
+        if let Some(motion) = &self.state.motion {
+            match name {
+                "V" => return Ok(nodal(3, own(motion.velocity.clone()))),
+                "VR" => return Ok(turning(motion.velocity.clone())),
+                "A" => return Ok(nodal(3, own(motion.acceleration.clone()))),
+                "AR" => return Ok(turning(motion.acceleration.clone())),
+                _ => {}
+            }
+        }
         match name {
             "U" => Ok(nodal(3, own(self.recover().displacement))),
             "UR" => Ok(turning(self.recover().displacement)),
@@ -212,7 +222,13 @@ impl Simulation {
             "CDPRESS" => Ok(contact(1, points.iter().map(|p| p.viscous).collect())),
             "CDSHEAR" => Ok(contact(2, points.iter().flat_map(|p| p.viscous_shear).collect())),
             "CSLIP" => Ok(contact(2, points.iter().flat_map(|p| p.slip).collect())),
-            _ => Err(FieldError { name: name.into(), available: FIELDS.into() }),
+            _ => {
+                let available = match self.state.motion {
+                    Some(_) => format!("{FIELDS}, {FIELDS_OF_MOTION}"),
+                    None => FIELDS.into(),
+                };
+                Err(FieldError { name: name.into(), available })
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::outputs::Source;
 use crate::procedure::interference;
 use crate::procedure::rows::Moment;
 use crate::simulation::{ContactPointResult, ContactStatus, Energies, HistoryRow, PairTotals, Simulation, WorkCounts};
+use crate::state::Motion;
 
 impl Simulation {
     /// Computes overclosures and results from the state alone, as after a restore.
@@ -168,6 +169,8 @@ impl Simulation {
             Source::PairShear(pair, d) => pairs[pair].shear_force[d],
             Source::PairStatus(pair, status) => points(pair).filter(|p| p.status == status).count() as f64,
             Source::Generalised(column) => self.generalised(column),
+            Source::Velocity(set, d) => self.mean_of_motion(set, d, |motion| &motion.velocity),
+            Source::Acceleration(set, d) => self.mean_of_motion(set, d, |motion| &motion.acceleration),
             Source::Energy(index) => {
                 let e = &self.derived.energies;
                 [e.strain, e.kinetic, e.external_work, e.friction, e.viscous, e.contact, e.impact_loss, e.total][index]
@@ -177,7 +180,21 @@ impl Simulation {
             Source::SevereDiscontinuityIterations => count(|c| c.severe_discontinuity_iterations),
             Source::Cutbacks => count(|c| c.cutbacks),
             Source::Augmentations => count(|c| c.augmentations),
+            Source::Impacts => count(|c| c.impacts),
             Source::LastStatusChange => self.state.last_change,
+        }
+    }
+
+    /// Mean of a component of a nodal vector over a node set of the outputs; 0 in a static step and for an empty set.
+    fn mean_of_motion(&self, set: usize, d: usize, vector: fn(&Motion) -> &Vec<[f64; 3]>) -> f64 {
+        let prepared = &self.prepared;
+        let nodes = &prepared.model.mesh.node_sets[prepared.outputs.sets[set].index()].nodes;
+        match &self.state.motion {
+            Some(motion) if !nodes.is_empty() => {
+                let share = 1.0 / nodes.len() as f64;
+                nodes.iter().map(|node| share * vector(motion)[node.index()][d]).sum()
+            }
+            _ => 0.0,
         }
     }
 
@@ -190,6 +207,11 @@ impl Simulation {
         let column = &self.prepared.columns[c];
         let values = if column.is_displacement() { &motion.reaction } else { &motion.displacement };
         column.entries().iter().map(|&(node, d, share)| share * values[node.index()][usize::from(d)]).sum()
+    }
+
+    /// Energies of the present time; in an explicit step those of the start of the last increment.
+    pub fn energies(&self) -> Energies {
+        self.derived.energies
     }
 
     /// The history row of the present time.

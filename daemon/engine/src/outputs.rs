@@ -31,6 +31,10 @@ pub enum Source {
     PairStatus(usize, ContactStatus),
     /// Generalised value of a column; none where no direction of the set takes part.
     Generalised(Option<usize>),
+    /// Mean of a component of the velocity over a node set, by its place in [`Outputs::sets`]; 0 in static steps.
+    Velocity(usize, usize),
+    /// Mean of a component of the acceleration over it; 0 in static steps.
+    Acceleration(usize, usize),
     /// One of the energies, in the order of [`ENERGIES`].
     Energy(usize),
     /// Increments so far, all steps.
@@ -43,6 +47,8 @@ pub enum Source {
     Cutbacks,
     /// Augmentations so far, all steps.
     Augmentations,
+    /// Impacts so far, all steps.
+    Impacts,
     /// Total time of the last status change.
     LastStatusChange,
 }
@@ -145,7 +151,8 @@ impl Outputs {
                 columns.len() - 1
             })
         };
-        for &set in &out.sets.clone() {
+        let is_dynamic = model.steps.iter().any(|step| step.procedure.is_dynamic());
+        for (position, &set) in out.sets.clone().iter().enumerate() {
             let set = &model.mesh.node_sets[set.index()];
             let share = 1.0 / set.nodes.len() as f64;
             for d in 0..3 {
@@ -163,6 +170,9 @@ impl Outputs {
                 out.add(format!("node.{}.RF{}", set.name, d + 1), Quantity::Force, what, Source::Generalised(*slot));
             }
             out.set_reactions.push(reactions);
+            if is_dynamic {
+                out.motion(position, &set.name);
+            }
         }
         let all: Vec<NodeId> =
             (0..model.mesh.nodes.len() as u32).map(NodeId).filter(|&n| constraints.touches(n)).collect();
@@ -195,7 +205,23 @@ impl Outputs {
             "Updates of the multipliers of augmented Lagrange".into(),
             Source::Augmentations,
         );
+        if is_dynamic {
+            let what = "Instants at which hard contact closed and velocities jumped (implicit dynamic steps)".into();
+            out.add("work.impacts".into(), Quantity::Count, what, Source::Impacts);
+        }
         out
+    }
+
+    fn motion(&mut self, position: usize, name: &str) {
+        for d in 0..3 {
+            let what = format!("Mean velocity {} of {name}", d + 1);
+            self.add(format!("node.{name}.V{}", d + 1), Quantity::Velocity, what, Source::Velocity(position, d));
+        }
+        for d in 0..3 {
+            let what = format!("Mean acceleration {} of {name}", d + 1);
+            let source = Source::Acceleration(position, d);
+            self.add(format!("node.{name}.A{}", d + 1), Quantity::Acceleration, what, source);
+        }
     }
 
     fn friction(&mut self, index: usize, name: &str) {

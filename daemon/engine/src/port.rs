@@ -32,6 +32,12 @@ pub enum Quantity {
     Angle,
     /// [force·length]
     Moment,
+    /// [length/time]
+    Velocity,
+    /// [radian/time]
+    AngularVelocity,
+    /// [radian/time²]
+    AngularAcceleration,
 }
 
 /// One scalar port.

@@ -167,6 +167,8 @@ pub struct WorkCounts {
     pub factorizations: u32,
     /// Augmentations: times that multipliers of augmented Lagrange were brought up to date.
     pub augmentations: u32,
+    /// Impacts: instants of implicit dynamic steps at which hard contact closed and velocities jumped.
+    pub impacts: u32,
 }
 
 /// What a step has done so far.
@@ -212,6 +214,8 @@ pub struct IncrementReport {
     pub step_time: f64,
     /// Size of the increment.
     pub increment_size: f64,
+    /// In an explicit step the largest increment that would have been stable \[time\].
+    pub stable_increment: Option<f64>,
     /// Points whose status at the end differs from that at the start: the contact log.
     pub status_changes: Vec<StatusChange>,
 }
@@ -236,7 +240,7 @@ pub struct CutbackReport {
 /// A field: row-major values, one row per label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// `U`, `UR`, `RF`, `RM`, `S`, `CPRESS`, `CSHEAR`, `CDPRESS`, `CDSHEAR`, `COPEN`, `CSLIP`, `CSTATUS`.
+    /// `U`, `UR`, `RF`, `RM`, in dynamic steps `V`, `VR`, `A`, `AR`; `S`, `CPRESS`, `CSHEAR`, `CDPRESS`, `CDSHEAR`, `COPEN`, `CSLIP`, `CSTATUS`.
     pub name: String,
     /// Node label of each row.
     pub labels: Vec<u32>,

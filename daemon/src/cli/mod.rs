@@ -9,8 +9,10 @@ pub mod remote;
 pub mod run;
 
 mod clock;
+mod increments;
 mod interrupt;
 mod monitor;
+mod pace;
 mod progress;
 mod restart;
 mod settings;

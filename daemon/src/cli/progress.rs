@@ -1,37 +1,30 @@
 //! What a person at a terminal sees while a run goes on: a bar on stderr, the increments table on stdout.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::io::IsTerminal;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use overclosure::simulation::IncrementReport;
 
 use super::clock::Stage;
+use super::increments::{Row, Table};
+use super::pace::Pace;
 use super::print;
-
-const TABLE_HEAD: &str = concat!(
-    "  STEP   INC   ATT SEVERE  EQUIL  TOTAL  TOTAL        STEP         INC OF\n",
-    "                   DISCON  ITERS  ITERS  TIME         TIME         TIME\n",
-    "                    ITERS\n",
-);
 
 /// Resolution of the bar.
 const TICKS: u64 = 1000;
+/// The bar moves at most this often.
+const BAR_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The bar and the table.
 pub struct Progress {
     bar: ProgressBar,
     quiet: bool,
-    table: Cell<Table>,
-}
-
-/// What has become of the increments table.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Table {
-    Awaited,
-    Begun,
-    /// Unwanted, or stdout cannot be written.
-    Off,
+    table: RefCell<Table>,
+    /// Whether rows are wanted, and stdout can be written.
+    tells: Cell<bool>,
+    pace: RefCell<Pace>,
+    moved: Cell<Option<Instant>>,
 }
 
 impl Progress {
@@ -41,13 +34,22 @@ impl Progress {
         let target = if visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(TICKS), target);
         // The template is a constant; a bar without it would still be a bar.
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg:24} [{bar:40}] {percent:>3} % {elapsed}") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{spinner} {msg:24} [{bar:40}] {percent:>3} % {elapsed}{prefix}")
+        {
             bar.set_style(style.progress_chars("=> "));
         }
         if visible {
-            bar.enable_steady_tick(std::time::Duration::from_millis(120));
+            bar.enable_steady_tick(Duration::from_millis(120));
         }
-        Self { bar, quiet, table: Cell::new(if quiet { Table::Off } else { Table::Awaited }) }
+        Self {
+            bar,
+            quiet,
+            table: RefCell::default(),
+            tells: Cell::new(!quiet),
+            pace: RefCell::default(),
+            moved: Cell::new(None),
+        }
     }
 
     /// Whether only findings are wanted.
@@ -65,40 +67,42 @@ impl Progress {
         self.bar.suspend(write)
     }
 
-    /// A row of the table. A stdout that nobody reads any more does not end the run: its results are in files.
-    pub fn increment(&self, increment: &IncrementReport, fraction: f64) {
-        self.bar.set_position((fraction.clamp(0.0, 1.0) * TICKS as f64) as u64);
-        let head = match self.table.get() {
-            Table::Off => return,
-            Table::Awaited => TABLE_HEAD,
-            Table::Begun => "",
-        };
-        let written = self.bar.suspend(|| print(&format!("{head}{}\n", row(increment))));
-        self.table.set(if written.is_ok() { Table::Begun } else { Table::Off });
+    /// An increment is done; `fraction` of the time of the run has passed. Of many increments not every one gets a row.
+    pub fn increment(&self, row: Row, fraction: f64) {
+        let now = Instant::now();
+        let left = self.pace.borrow_mut().left(now, fraction);
+        if self.moved.get().is_none_or(|then| now - then >= BAR_INTERVAL) {
+            self.moved.set(Some(now));
+            self.bar.set_position((fraction.clamp(0.0, 1.0) * TICKS as f64) as u64);
+            self.bar.set_prefix(left.map_or_else(String::new, |left| format!(", {} left", clock(left))));
+        }
+        if !self.tells.get() {
+            return;
+        }
+        let due = self.pace.borrow_mut().is_due(now, row.step(), row.rows_at_once());
+        let text = self.table.borrow_mut().take(row, due, left.map(clock));
+        self.write(&text);
     }
 
-    /// The bar goes.
+    /// The last row, if it is still to be written; then the bar goes.
     pub fn clear(&self) {
+        let text = self.table.borrow_mut().end();
+        self.write(&text);
         self.bar.finish_and_clear();
+    }
+
+    /// A stdout that nobody reads any more does not end the run: its results are in files.
+    fn write(&self, text: &str) {
+        if !text.is_empty() && self.bar.suspend(|| print(text)).is_err() {
+            self.tells.set(false);
+        }
     }
 }
 
-fn row(increment: &IncrementReport) -> String {
-    let IncrementReport {
-        step,
-        increment,
-        attempt,
-        severe_discontinuity_iterations: severe,
-        equilibrium_iterations: equilibrium,
-        time,
-        step_time,
-        increment_size,
-        status_changes: _,
-    } = increment;
-    let total = severe + equilibrium;
-    format!(
-        "{step:>6}{increment:>6}{attempt:>6}{severe:>7}{equilibrium:>7}{total:>7}  {time:<13.6}{step_time:<13.6}{increment_size:<.6}"
-    )
+/// `h:mm:ss`.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    format!("{}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60)
 }
 
 #[cfg(test)]
@@ -106,22 +110,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_stand_under_their_headings() {
-        let report = IncrementReport {
-            step: 1,
-            increment: 12,
-            attempt: 2,
-            severe_discontinuity_iterations: 3,
-            equilibrium_iterations: 4,
-            time: 1.5,
-            step_time: 0.5,
-            increment_size: 0.25,
-            status_changes: Vec::new(),
-        };
-        let row = row(&report);
-        let numbers: Vec<&str> = row.split_whitespace().collect();
-        assert_eq!(numbers, ["1", "12", "2", "3", "4", "7", "1.500000", "0.500000", "0.250000"]);
-        let head = TABLE_HEAD.lines().next().unwrap();
-        assert_eq!(head.find("STEP").unwrap() + 4, row.find('1').unwrap() + 1);
+    fn times_are_told_in_hours() {
+        assert_eq!(clock(Duration::from_millis(999)), "0:00:00");
+        assert_eq!(clock(Duration::from_secs(3600 + 2 * 60 + 3)), "1:02:03");
     }
 }

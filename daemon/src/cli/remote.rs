@@ -274,13 +274,14 @@ fn step(arguments: &StepArgs) -> Result<Exit, Failure> {
     let counts = &reply.counts;
     let mut text = format!(
         "time {}\nincrements {}\nsevere_discontinuity_iterations {}\nequilibrium_iterations {}\n\
-         cutbacks {}\naugmentations {}\n",
+         cutbacks {}\naugmentations {}\nimpacts {}\n",
         reply.time,
         counts.increments,
         counts.severe_discontinuity_iterations,
         counts.equilibrium_iterations,
         counts.cutbacks,
-        counts.augmentations
+        counts.augmentations,
+        counts.impacts
     );
     for (port, value) in session.ports().outputs.iter().zip(&reply.outputs) {
         text += &format!("{} {value:?}\n", port.name);

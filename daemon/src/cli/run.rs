@@ -161,7 +161,7 @@ impl Job {
                 return Err(Exit::OurFailure);
             }
         };
-        let (writer, followed) = monitor.finish();
+        let (writer, followed) = monitor.finish(&self.simulation);
         self.clock.enter(Stage::WRITE);
         self.progress.stage(Stage::WRITE);
         let written = writer.finish(&self.simulation);
@@ -187,7 +187,7 @@ impl Job {
     }
 
     fn report(&self, ended: &Ended, followed: Followed, snapshots: Vec<SnapshotSummary>) -> RunReport {
-        let Followed { audit, sizes, cutbacks, status_changes } = followed;
+        let Followed { audit, sizes, cutbacks, status_changes, status_changes_omitted } = followed;
         let simulation = &self.simulation;
         let mesh = &self.prepared.model().mesh;
         RunReport {
@@ -208,6 +208,7 @@ impl Job {
             steps: sizes.enter(simulation.step_reports().into_iter().map(Into::into).collect()),
             cutbacks,
             status_changes,
+            status_changes_omitted,
             snapshots,
             diagnostics: self.diagnostics.iter().map(Finding::from).collect(),
             audit,

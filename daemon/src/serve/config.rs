@@ -40,7 +40,7 @@ pub struct LimitsConfig {
     pub queue: u32,
     /// Bytes of one request, so also of a deck. Default 64 MiB, range 64 KiB to 1 GiB.
     pub message_bytes: u64,
-    /// Increments that one step request may take. Default 10 000, at least 1.
+    /// Increments that one step request may take. Default 1 000 000, at least 1.
     pub increments_per_request: u32,
     /// Overclosures in one law request. Default 1 000 000, range 1 to 10 000 000.
     pub law_points: u32,
@@ -83,7 +83,7 @@ impl Default for LimitsConfig {
             sessions: 16,
             queue: 16,
             message_bytes: 64 << 20,
-            increments_per_request: 10_000,
+            increments_per_request: 1_000_000,
             law_points: 1_000_000,
             replies_kept: 16,
             threads: u32::try_from(threads).unwrap_or(1).min(1024),

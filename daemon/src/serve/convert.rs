@@ -72,6 +72,9 @@ fn quantity(quantity: port::Quantity) -> Quantity {
         port::Quantity::Count => Quantity::Count,
         port::Quantity::Angle => Quantity::Angle,
         port::Quantity::Moment => Quantity::Moment,
+        port::Quantity::Velocity => Quantity::Velocity,
+        port::Quantity::AngularVelocity => Quantity::AngularVelocity,
+        port::Quantity::AngularAcceleration => Quantity::AngularAcceleration,
     }
 }
 
@@ -83,6 +86,7 @@ pub fn counts(counts: &WorkCounts) -> Counts {
         cutbacks,
         factorizations,
         augmentations,
+        impacts,
     } = *counts;
     Counts {
         increments,
@@ -91,6 +95,7 @@ pub fn counts(counts: &WorkCounts) -> Counts {
         cutbacks,
         factorizations,
         augmentations,
+        impacts,
     }
 }
 

@@ -47,7 +47,7 @@ Configuration file, with the defaults:
   sessions = 16
   queue = 16                        # requests waiting per session; one more is refused as busy
   message_bytes = 67108864          # of one request, so also of a deck
-  increments_per_request = 10000
+  increments_per_request = 1000000
   law_points = 1000000
   replies_kept = 16                 # per session, for repeated requests
   threads = 2                       # that one session may ask for; those of the machine unless given

@@ -359,6 +359,7 @@ fn total(simulation: &Simulation) -> Counts {
             cutbacks,
             factorizations,
             augmentations,
+            impacts,
         } = report.counts;
         sum.increments += increments;
         sum.equilibrium_iterations += equilibrium_iterations;
@@ -366,6 +367,7 @@ fn total(simulation: &Simulation) -> Counts {
         sum.cutbacks += cutbacks;
         sum.factorizations += factorizations;
         sum.augmentations += augmentations;
+        sum.impacts += impacts;
     }
     convert::counts(&sum)
 }
@@ -380,6 +382,7 @@ fn difference(before: &Counts, after: &Counts) -> Counts {
         cutbacks: after.cutbacks.saturating_sub(before.cutbacks),
         factorizations: after.factorizations.saturating_sub(before.factorizations),
         augmentations: after.augmentations.saturating_sub(before.augmentations),
+        impacts: after.impacts.saturating_sub(before.impacts),
     }
 }
 

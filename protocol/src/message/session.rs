@@ -121,6 +121,12 @@ choice! {
         Angle,
         /// [force·length]
         Moment,
+        /// Length per time.
+        Velocity,
+        /// [radian/time]
+        AngularVelocity,
+        /// [radian/time²]
+        AngularAcceleration,
     } default Count
 }
 
@@ -177,7 +183,7 @@ message! {
 
 message! {
     /// What a step of the deck has done so far.
-    pub struct StepSummary/2 {
+    pub struct StepSummary/3 {
         /// Name of the step.
         pub name: String,
         /// Its procedure, e.g. `*STATIC`.
@@ -192,7 +198,7 @@ message! {
 
 message! {
     /// Reply to `report`.
-    pub struct Report/2 {
+    pub struct Report/3 {
         /// The session.
         pub session: String,
         /// Sequence number that the next step or restore must carry.

@@ -42,7 +42,7 @@ choice! {
 
 message! {
     /// Work done.
-    pub struct Counts/2 {
+    pub struct Counts/3 {
         /// Increments completed.
         pub increments: u32,
         /// Equilibrium iterations.
@@ -55,12 +55,14 @@ message! {
         pub factorizations: u32,
         /// Augmentations: times that multipliers of augmented Lagrange were brought up to date.
         pub augmentations: u32,
+        /// Impacts: instants of implicit dynamic steps at which hard contact closed and velocities jumped.
+        pub impacts: u32,
     }
 }
 
 message! {
     /// Reply to `step`.
-    pub struct StepReply/2 {
+    pub struct StepReply/3 {
         /// Sequence number of the request; the next one is one higher.
         pub sequence: u64,
         /// How the step ended.

@@ -30,7 +30,7 @@ mod vtu;
 mod tests;
 
 pub use file::OutputError;
-pub use report::{CutbackSummary, Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StepSummary, write_report};
+pub use report::{CutbackSummary, Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StableIncrement, StepSummary, write_report};
 pub use snapshots::SnapshotSummary;
 pub use status_log::{StatusChangeSummary, status_changes};
 

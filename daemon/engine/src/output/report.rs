@@ -54,6 +54,8 @@ pub struct RunReport {
     pub cutbacks: Vec<CutbackSummary>,
     /// The contact log: points that changed status in this run, in order.
     pub status_changes: Vec<StatusChangeSummary>,
+    /// Changes that the log does not tell, for there were too many.
+    pub status_changes_omitted: u64,
     /// Snapshots from which a run can go on.
     pub snapshots: Vec<SnapshotSummary>,
     /// Findings about the deck.
@@ -130,10 +132,25 @@ pub struct StepSummary {
     pub factorizations: u32,
     /// Augmentations of augmented Lagrange.
     pub augmentations: u32,
+    /// Impacts of an implicit dynamic step.
+    pub impacts: u32,
     /// Smallest increment of the step in this run \[time\]; absent before the first.
     pub increment_min: Option<f64>,
     /// Largest increment of the step in this run \[time\]; absent before the first.
     pub increment_max: Option<f64>,
+    /// Stable increments of an explicit step in this run; absent before the first, and in other steps.
+    pub stable_increment: Option<StableIncrement>,
+}
+
+/// Stable increments over a step \[time\].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StableIncrement {
+    /// Of the first increment.
+    pub first: f64,
+    /// The smallest one.
+    pub min: f64,
+    /// Of the last increment.
+    pub last: f64,
 }
 
 impl From<StepReport> for StepSummary {
@@ -146,6 +163,7 @@ impl From<StepReport> for StepSummary {
             cutbacks,
             factorizations,
             augmentations,
+            impacts,
         } = counts;
         Self {
             name,
@@ -157,8 +175,10 @@ impl From<StepReport> for StepSummary {
             cutbacks,
             factorizations,
             augmentations,
+            impacts,
             increment_min: None,
             increment_max: None,
+            stable_increment: None,
         }
     }
 }

@@ -282,6 +282,7 @@ impl Simulation {
             time: self.time(),
             step_time: self.state.step_time,
             increment_size: size,
+            stable_increment: None,
             status_changes,
         }
     }
