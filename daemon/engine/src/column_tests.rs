@@ -72,6 +72,7 @@ fn column(normal: NormalBehavior, travel: f64) -> Model {
         steps: vec![Step {
             name: "Step-1".into(),
             increments_max: 100,
+            default_amplitude: Default::default(),
             procedure: Procedure::Static(StaticControl {
                 increment_initial: 0.05,
                 period: 1.0,

@@ -76,6 +76,9 @@ pub fn fingerprint(model: &Model) -> u64 {
     }
     for step in &model.steps {
         text(format_args!("{}{:?}{:?}", step.increments_max, step.procedure, step.loads_removed));
+        if step.default_amplitude != Default::default() {
+            text(format_args!("{:?}", step.default_amplitude));
+        }
         text(format_args!("{:?}", step.contact));
         for l in &step.loads {
             text(format_args!("{:?}{:?}{}{:?}", l.region_name, l.kind, l.magnitude.to_bits(), l.amplitude));

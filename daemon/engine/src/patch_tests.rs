@@ -59,6 +59,7 @@ fn patch(kind: ElementKind) -> Model {
         steps: vec![Step {
             name: "Step-1".into(),
             increments_max: 1,
+            default_amplitude: Default::default(),
             procedure: Procedure::Static(StaticControl {
                 increment_initial: 1.0,
                 period: 1.0,

@@ -326,11 +326,7 @@ impl Simulation {
         let course = self.prepared.loading.courses[self.state.step as usize][column];
         let replaced =
             self.input_of_column[column].filter(|_| self.on_last_step()).and_then(|i| self.state.magnitudes[i]);
-        match (course, replaced) {
-            (Course::Ramp { .. }, Some(magnitude)) => Course::Ramp { magnitude },
-            (Course::Curve { amplitude, .. }, Some(magnitude)) => Course::Curve { magnitude, amplitude },
-            (course, _) => course,
-        }
+        replaced.map_or(course, |magnitude| course.with_magnitude(magnitude))
     }
 
     fn begin_next_step(&mut self) {

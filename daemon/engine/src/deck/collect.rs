@@ -81,7 +81,7 @@ fn join_continuations(source: &mut Source<'_>, mut header: Vec<u8>) -> io::Resul
 }
 
 /// Remedy for an element type that is not solved.
-const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20, C3D20R, T3D2, SPRINGA, SPRING1, SPRING2, MASS, GAPUNI, GAPCYL, GAPSPHER, R3D3 and R3D4 are solved";
+const ELEMENT_TYPES: &str = "C3D4, C3D6, C3D8, C3D8I, C3D8R, C3D10, C3D15, C3D20, C3D20R, T3D2, SPRINGA, SPRING1, SPRING2, DASHPOTA, DASHPOT1, DASHPOT2, MASS, ROTARYI, GAPUNI, GAPCYL, GAPSPHER, R3D3 and R3D4 are solved";
 
 /// What to do about an element type that is not solved.
 fn element_type_remedy(name: &str) -> &'static str {

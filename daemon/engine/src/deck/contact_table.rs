@@ -83,7 +83,7 @@ pub const CONTACT: &[Keyword] = &[
         Model,
         Fields,
         &[
-            P::required("INTERACTION"),
+            P::value("INTERACTION"),
             P::one_of(
                 "TYPE",
                 &[
@@ -98,7 +98,7 @@ pub const CONTACT: &[Keyword] = &[
             ),
             P::flag("SMALL SLIDING"),
             P::silent("NO THICKNESS"),
-            P::silent("CPSET"),
+            P::value("CPSET"),
             P::value("EXTENSION ZONE"),
             P::value("ADJUST"),
             P::value("HCRIT"),
@@ -109,9 +109,9 @@ pub const CONTACT: &[Keyword] = &[
             P::refused("TIED", "tied contact is not solved"),
             P::refused("GEOMETRIC CORRECTION", "the primary surface is used as meshed"),
             P::refused("MINIMUM DISTANCE", "the distances of the mesh are used"),
-            P::refused("MECHANICAL CONSTRAINT", NO_EXPLICIT),
-            P::refused("WEIGHT", NO_EXPLICIT),
-            P::refused("OP", "switch pairs on and off with *MODEL CHANGE, TYPE=CONTACT PAIR"),
+            P::one_of("MECHANICAL CONSTRAINT", &[("KINEMATIC", Read), ("PENALTY", Read)]),
+            P::value("WEIGHT"),
+            P::one_of("OP", &[("ADD", Read), ("DELETE", Read)]),
         ],
     ),
     Keyword::read(

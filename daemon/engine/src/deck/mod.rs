@@ -12,6 +12,7 @@ mod collect;
 mod contact_table;
 mod data;
 mod dialect;
+mod dynamic_table;
 mod facts;
 mod keywords;
 mod lex;

@@ -7,8 +7,8 @@ use super::keywords::{Keyword, Parameter as P};
 
 const WRITE_INTO_DECK: &str = "bring the lines in with *INCLUDE under the keyword";
 const FLAT_DECK: &str = "write the deck without parts and assemblies";
-const NO_DAMPING: &str = "damping has no effect in a static step";
-const STATICS_ONLY: &str = "only static steps are solved";
+const NO_DAMPING: &str = "it acts in modal analyses only";
+const STATICS_ONLY: &str = "it belongs to modal and harmonic analyses, which are not solved";
 
 /// Keywords that describe the model.
 pub const MODEL: &[Keyword] = &[
@@ -187,7 +187,7 @@ pub const MODEL: &[Keyword] = &[
                 &[("ISOTROPIC", Read), ("ANISOTROPIC", Refused("a mass is the same in every direction"))],
             ),
             P::refused("ORIENTATION", "a mass is the same in every direction"),
-            P::ignored("ALPHA", NO_DAMPING),
+            P::value("ALPHA"),
             P::ignored("COMPOSITE", NO_DAMPING),
         ],
     ),
@@ -244,14 +244,7 @@ pub const MODEL: &[Keyword] = &[
         &[
             P::one_of("OP", &[("MOD", Read), ("NEW", Read)]),
             P::value("AMPLITUDE"),
-            P::one_of(
-                "TYPE",
-                &[
-                    ("DISPLACEMENT", Read),
-                    ("VELOCITY", Refused("prescribe displacements")),
-                    ("ACCELERATION", Refused("prescribe displacements")),
-                ],
-            ),
+            P::one_of("TYPE", &[("DISPLACEMENT", Read), ("VELOCITY", Read), ("ACCELERATION", Read)]),
             P::silent("REGION TYPE"),
             P::refused("FIXED", "prescribe the displacements reached in the step before"),
             P::refused("LOAD CASE", STATICS_ONLY),

@@ -4,12 +4,16 @@
 
 use super::keywords::{DataLines, Effect, Keyword, Parameter as P, Placement};
 
-const STATIC: Effect = Effect::Refused("only static steps are solved; replace the procedure by *STATIC");
+const MASS_SCALING: Effect =
+    Effect::Refused("masses are scaled once, at the start of a step: write *FIXED MASS SCALING");
+const STATIC: Effect = Effect::Refused(
+    "static and dynamic steps are solved: write *STATIC, *DYNAMIC or *DYNAMIC, EXPLICIT as the procedure",
+);
 const FLAT: Effect = Effect::Refused("write the deck without parts and assemblies");
 const PLAIN_NODES: Effect = Effect::Refused("write the nodes and elements themselves");
 const AXES: Effect = Effect::Refused("give values in global directions");
 const SOLIDS: Effect = Effect::Refused(
-    "elements are solids (C3D4 to C3D20R), T3D2, SPRINGA, SPRING1, SPRING2 and MASS; nodes are coupled by *EQUATION",
+    "elements are solids (C3D4 to C3D20R), T3D2, springs, dashpots, MASS and ROTARYI; nodes are coupled by *EQUATION",
 );
 const ELASTIC_ONLY: Effect =
     Effect::Refused("only isotropic linear elasticity is solved; describe the material by *ELASTIC");
@@ -30,7 +34,8 @@ const GENERAL_CONTACT: Effect =
     Effect::Refused("general contact is not solved: name every two surfaces that may meet by *CONTACT PAIR");
 const ISOTROPIC: Effect = Effect::Ignored("the material is isotropic and stresses are written in global directions");
 const NO_HEAT: Effect = Effect::Ignored("temperatures are not solved for and have no effect on the elastic answer");
-const NO_DAMPING: Effect = Effect::Ignored("damping has no effect in a static step");
+const NO_DAMPING: Effect =
+    Effect::Ignored("it acts in modal analyses only; bodies are damped by *DAMPING of their material");
 const NO_STATE: Effect = Effect::Ignored("no material that is read has state variables");
 const CONTROLS: Effect = Effect::Ignored("convergence is checked by the solver's own, tight limits");
 const OUTPUT: Effect = Effect::Ignored("the result files hold what they always hold");
@@ -67,7 +72,6 @@ pub const OTHER: &[Keyword] = &[
     other("*COUPLED THERMAL-ELECTRICAL", STATIC),
     other("*CRACK PROPAGATION", STATIC),
     other("*DIRECT CYCLIC", STATIC),
-    noted("*DYNAMIC", STATIC, &[P::optional("EXPLICIT")]),
     other("*ELECTROMAGNETICS", STATIC),
     other("*FEASIBLE DIRECTION", STATIC),
     other("*FREQUENCY", STATIC),
@@ -136,7 +140,6 @@ pub const OTHER: &[Keyword] = &[
     other("*BEAM ADDED INERTIA", SOLIDS),
     other("*BEAM GENERAL SECTION", SOLIDS),
     other("*BEAM SECTION", SOLIDS),
-    other("*BULK VISCOSITY", SOLIDS),
     other("*COHESIVE SECTION", SOLIDS),
     other("*CONNECTOR BEHAVIOR", SOLIDS),
     other("*CONNECTOR DAMPING", SOLIDS),
@@ -147,7 +150,6 @@ pub const OTHER: &[Keyword] = &[
     other("*CONNECTOR SECTION", SOLIDS),
     other("*CONNECTOR STOP", SOLIDS),
     other("*COUPLING", SOLIDS),
-    other("*DASHPOT", SOLIDS),
     other("*DISTRIBUTING", SOLIDS),
     other("*DISTRIBUTING COUPLING", SOLIDS),
     other("*DISTRIBUTION", SOLIDS),
@@ -181,7 +183,6 @@ pub const OTHER: &[Keyword] = &[
     other("*PRE-TENSION SECTION", SOLIDS),
     other("*RELEASE", SOLIDS),
     other("*RIGID SURFACE", SOLIDS),
-    other("*ROTARY INERTIA", SOLIDS),
     other("*SECTION CONTROLS", SOLIDS),
     other("*SHELL GENERAL SECTION", SOLIDS),
     other("*SHELL SECTION", SOLIDS),
@@ -190,6 +191,7 @@ pub const OTHER: &[Keyword] = &[
     other("*SUBSTRUCTURE LOAD CASE", SOLIDS),
     other("*TIE", SOLIDS),
     other("*VALUES AT INFINITY", SOLIDS),
+    other("*VARIABLE MASS SCALING", MASS_SCALING),
     other("*ANNEAL TEMPERATURE", ELASTIC_ONLY),
     other("*BIAXIAL TEST DATA", ELASTIC_ONLY),
     other("*BRITTLE CRACKING", ELASTIC_ONLY),
@@ -264,7 +266,6 @@ pub const OTHER: &[Keyword] = &[
     other("*IMPEDANCE", LOADS),
     other("*INCIDENT WAVE", LOADS),
     other("*INERTIA LOAD", LOADS),
-    other("*INITIAL CONDITIONS", LOADS),
     other("*LOAD CASE", LOADS),
     other("*MASS FLOW", LOADS),
     other("*MASS FLOW RATE", LOADS),
@@ -325,7 +326,6 @@ pub const OTHER: &[Keyword] = &[
     other("*SPECIFIC HEAT", NO_HEAT),
     other("*VIEWFACTOR", NO_HEAT),
     other("*COMPOSITE MODAL DAMPING", NO_DAMPING),
-    other("*DAMPING", NO_DAMPING),
     other("*DAMPING CONTROLS", NO_DAMPING),
     other("*GLOBAL DAMPING", NO_DAMPING),
     other("*MODAL DAMPING", NO_DAMPING),

@@ -5,7 +5,7 @@ use super::keywords::Effect::{Ignored, Read, Refused, Silent};
 use super::keywords::Placement::{Anywhere, Step};
 use super::keywords::{Keyword, Parameter as P};
 
-const STATICS_ONLY: &str = "only static steps are solved";
+const STATICS_ONLY: &str = "it belongs to modal and harmonic analyses, which are not solved";
 const OUTPUT_DEFAULT: &str =
     "results are written at the increments that FREQUENCY, NUMBER INTERVAL or TIME INTERVAL select";
 const TIME_MARKS: &str = "results are written at the increment that reaches the end of an interval";
@@ -24,13 +24,7 @@ pub const STEPS: &[Keyword] = &[
             P::value("NAME"),
             P::value("INC"),
             P::one_of("NLGEOM", &[("", Read), ("YES", Read), ("NO", Silent)]),
-            P::one_of(
-                "AMPLITUDE",
-                &[
-                    ("RAMP", Read),
-                    ("STEP", Refused("give the loads of the step an *AMPLITUDE that is 1 from time 0 on")),
-                ],
-            ),
+            P::one_of("AMPLITUDE", &[("RAMP", Read), ("STEP", Read)]),
             P::one_of("UNSYMM", &[("YES", Silent), ("NO", Silent), ("", Silent)]),
             P::silent("EXTRAPOLATION"),
             P::silent("CONVERT SDI"),

@@ -90,13 +90,9 @@ fn describe_pair(model: &Model, pair: &ContactPair) -> String {
     let surfaces = match &pair.members {
         PairMembers::Surfaces(surfaces) => surfaces,
         PairMembers::Gaps(gaps) => return format!("{}: {} contact elements; {behavior}", pair.name, gaps.len()),
-        PairMembers::General([first, second]) => {
-            return format!(
-                "{}: general contact of {} with {}; {behavior}",
-                pair.name,
-                describe_surface(model, *first),
-                describe_surface(model, *second)
-            );
+        PairMembers::General(general) => {
+            let [first, second] = general.surfaces.map(|surface| describe_surface(model, surface));
+            return format!("{}: general contact of {first} with {second}; {behavior}", pair.name);
         }
     };
     let mut text = format!(

@@ -202,9 +202,20 @@ pub enum PairMembers {
     Surfaces(SurfacePair),
     /// `*GAP` over an element set: one contact point per element.
     Gaps(Vec<GapElement>),
-    /// `*CONTACT`: general contact of Abaqus/Explicit. Nodes of each surface meet faces of the other, where they belong to different
-    /// bodies; both may be the same surface.
-    General([SurfaceId; 2]),
+    /// `*CONTACT`: general contact of Abaqus/Explicit.
+    General(GeneralContact),
+}
+
+/// A part of general contact: nodes of each surface meet faces of the other, where they belong to different bodies. With
+/// [`ExplicitContact::weight`] 0.5 (the default of general contact) both ways count half; with 1 only nodes of the first surface meet
+/// faces of the second.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GeneralContact {
+    /// Surfaces of faces; both may be the same.
+    pub surfaces: [SurfaceId; 2],
+    /// `*CONTACT EXCLUSIONS`, and what other parts of general contact treat with properties of their own: a node that is on one surface
+    /// of a couple does not meet a face that is on the other.
+    pub excluded: Vec<[SurfaceId; 2]>,
 }
 
 impl ContactPair {

@@ -369,6 +369,12 @@ impl Elements {
         self.ends.push(self.nodes.len() as u32);
     }
 
+    /// Gives an element another node in place of one of its own, by their positions.
+    pub fn replace_node(&mut self, element: usize, index: usize, node: NodeId) {
+        let start = element.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.nodes[start as usize + index] = node;
+    }
+
     /// Kind of an element by its position.
     pub fn kind(&self, element: usize) -> ElementKind {
         self.kinds[element]

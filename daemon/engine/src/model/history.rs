@@ -12,6 +12,8 @@ pub struct Step {
     pub increments_max: u32,
     /// Procedure and its data line.
     pub procedure: Procedure,
+    /// How values without an amplitude of their own are reached.
+    pub default_amplitude: DefaultAmplitude,
     /// `*BOUNDARY` lines of the step, in order.
     pub boundaries: Vec<Boundary>,
     /// `*CLOAD`, `*DLOAD`, `*DSLOAD` lines of the step, in order.
@@ -24,6 +26,16 @@ pub struct Step {
     pub output: OutputRequests,
     /// Line of `*STEP`.
     pub place: Place,
+}
+
+/// `AMPLITUDE` of `*STEP`: how loads and prescribed values without an amplitude of their own are reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DefaultAmplitude {
+    /// Linearly over the step, from where they were: what `*STATIC` does unless told otherwise.
+    #[default]
+    Ramp,
+    /// At once, at the start of the step: what `*DYNAMIC` does unless told otherwise.
+    Step,
 }
 
 /// Kinds of loads whose earlier values do not carry over into this step.
@@ -232,7 +244,7 @@ pub struct Boundary {
     pub kind: BoundaryKind,
     /// Prescribed displacement \[length\], velocity or acceleration at amplitude 1.
     pub magnitude: f64,
-    /// Amplitude, if any; otherwise the step's ramp (velocities and accelerations: at once).
+    /// Amplitude, if any; otherwise that of the step ([`Step::default_amplitude`]).
     pub amplitude: Option<AmplitudeId>,
     /// The line.
     pub place: Place,
@@ -261,7 +273,7 @@ pub struct Load {
     pub kind: LoadKind,
     /// Force, pressure or acceleration at amplitude 1.
     pub magnitude: f64,
-    /// Amplitude, if any; otherwise the step's ramp.
+    /// Amplitude, if any; otherwise that of the step ([`Step::default_amplitude`]).
     pub amplitude: Option<AmplitudeId>,
     /// The line.
     pub place: Place,

@@ -80,7 +80,8 @@ pub struct Mesh {
     pub surfaces: Vec<Surface>,
     /// Analytical surfaces, by [`SurfaceKind::Analytical`].
     pub analytical: Vec<AnalyticalSurface>,
-    /// Reference nodes of rigid bodies, each with the node whose three displacements are its rotations \[rad\]; by reference node.
+    /// Nodes with rotations (reference nodes of rigid bodies, nodes of ROTARYI elements), each with the node whose three displacements
+    /// are its rotations \[rad\]; by node.
     pub rotations: Vec<(NodeId, NodeId)>,
     /// How many of the last nodes are not the analyst's: they only carry the rotations of reference nodes, whose numbers they have.
     pub hidden_nodes: u32,

@@ -1,34 +1,20 @@
 //! Loads and prescribed displacements in time: which columns a deck needs and what each is worth at any moment.
 //!
-//! A column is one line of `*BOUNDARY`, `*CLOAD`, `*DLOAD` or `*DSLOAD`; the same line in a later step continues it. In a
-//! static step a value without an amplitude goes linearly from where it was to its magnitude; a line that a later step
-//! does not repeat holds (and goes on following an amplitude on total time); one removed by OP=NEW ramps to zero.
+//! A column is one line of `*BOUNDARY`, `*CLOAD`, `*DLOAD` or `*DSLOAD`; the same line in a later step continues it. A value
+//! without an amplitude goes linearly from where it was to its magnitude, or has it at once, as the step says; a line that a later
+//! step does not repeat holds (and goes on following an amplitude on total time); one removed by OP=NEW goes to zero.
+//!
+//! The coefficient of a `*BOUNDARY` is the displacement, whatever is prescribed: velocities and accelerations are integrated exactly
+//! from displacement and velocity at the start of the step ([`Loading::motion`]).
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::diagnostic::Diagnostic;
-use crate::model::{AmplitudeClock, AmplitudeId, Boundary, LoadKind, Model, NodeId};
+use crate::model::{AmplitudeClock, AmplitudeId, Boundary, BoundaryKind, DefaultAmplitude, LoadKind, Model, NodeId};
 use crate::port::{Port, Quantity};
+pub use crate::procedure::courses::{ColumnMotion, Course, value_at};
+use crate::procedure::courses::{Integrals, StepTime};
 use crate::solve::columns::{Column, force_pattern, merge};
-
-/// What a column does during a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Course {
-    /// Not begun yet, or standing at its last value.
-    Hold,
-    /// From the value at the start of the step linearly to the magnitude at its end.
-    Ramp {
-        /// Value at the end of the step.
-        magnitude: f64,
-    },
-    /// Magnitude times amplitude.
-    Curve {
-        /// Factor of the amplitude.
-        magnitude: f64,
-        /// The amplitude.
-        amplitude: AmplitudeId,
-    },
-}
 
 /// All columns and their courses.
 pub struct Loading {
@@ -36,10 +22,15 @@ pub struct Loading {
     pub columns: Vec<Column>,
     /// Per step and column.
     pub courses: Vec<Vec<Course>>,
+    /// Per step and column: what takes the course. Loads count as displacements: their coefficient is what the course says.
+    pub kinds: Vec<Vec<BoundaryKind>>,
+    /// Per column: velocity of its direction at the start of the analysis, from `*INITIAL CONDITIONS` [length/time].
+    pub rates_initial: Vec<f64>,
     /// Column of each input port.
     pub input_columns: Vec<usize>,
     /// Input ports: lines of the last step with a non-zero magnitude.
     pub inputs: Vec<Port>,
+    integrals: Integrals,
 }
 
 /// What identifies a line across steps: kind, region, detail and its rank among equal lines of one step.
@@ -55,6 +46,7 @@ struct Line<'a> {
     description: String,
     magnitude: f64,
     amplitude: Option<AmplitudeId>,
+    kind: BoundaryKind,
     source: Source<'a>,
 }
 
@@ -79,6 +71,7 @@ fn lines(model: &Model, step: usize) -> Vec<Line<'_>> {
         },
         magnitude: b.magnitude,
         amplitude: b.amplitude,
+        kind: b.kind,
         source: Source::Boundary(b),
     });
     let loads = step.loads.iter().map(move |l| {
@@ -116,6 +109,7 @@ fn lines(model: &Model, step: usize) -> Vec<Line<'_>> {
             description,
             magnitude: l.magnitude,
             amplitude: l.amplitude,
+            kind: BoundaryKind::Displacement,
             source: Source::Load(&l.kind),
         }
     });
@@ -151,19 +145,33 @@ impl Loading {
         let mut columns = Vec::new();
         let mut courses: Vec<Vec<Course>> = Vec::new();
         let mut owners = Owners::default();
-        let mut kinds: Vec<&'static str> = Vec::new();
+        let mut families: Vec<&'static str> = Vec::new();
+        let mut kinds: Vec<Vec<BoundaryKind>> = Vec::new();
+        let mut integrals = Integrals::default();
         let mut column_of_line = Vec::new();
+        let mut begun = 0.0;
         for (s, step) in model.steps.iter().enumerate() {
             // What an earlier step left behind; OP=NEW ramps the loads of its kind to zero.
             let previous = courses.last().cloned().unwrap_or_default();
-            let mut now: Vec<Course> = previous.iter().map(|c| carried_over(model, *c)).collect();
-            for (course, kind) in now.iter_mut().zip(&kinds) {
+            let mut kinds_now = kinds.last().cloned().unwrap_or_default();
+            let carried = previous.iter().zip(&kinds_now).map(|(&c, &kind)| carried_over(model, c, kind, s, begun));
+            let mut now: Vec<Course> = carried.collect();
+            if s > 0 {
+                begun += model.steps[s - 1].procedure.period();
+            }
+            if !step.procedure.is_dynamic() {
+                // Nothing moves on by itself in a static step.
+                let moving =
+                    now.iter_mut().zip(&mut kinds_now).filter(|(_, kind)| **kind != BoundaryKind::Displacement);
+                moving.for_each(|(course, kind)| (*course, *kind) = (Course::Hold, BoundaryKind::Displacement));
+            }
+            for (course, family) in now.iter_mut().zip(&families) {
                 let removed = step.loads_removed;
                 if matches!(
-                    (*kind, removed.cload, removed.dload, removed.dsload),
+                    (*family, removed.cload, removed.dload, removed.dsload),
                     ("cload", true, ..) | ("dload", _, true, _) | ("dsload", .., true)
                 ) {
-                    *course = Course::Ramp { magnitude: 0.0 };
+                    *course = without_amplitude(step.default_amplitude, 0.0);
                 }
             }
             let mut ranks: FxHashMap<String, usize> = FxHashMap::default();
@@ -173,8 +181,9 @@ impl Loading {
                 *rank += 1;
                 let key = Key { name: line.name.clone(), rank: *rank };
                 let known = of_key.get(&key).copied();
-                // A zero displacement that was never anything else is a support, not a column.
-                if known.is_none() && line.magnitude == 0.0 && matches!(line.source, Source::Boundary(_)) {
+                // What was never moved and has no displacement or velocity is a support, not a column.
+                let is_still = line.magnitude == 0.0 && line.kind != BoundaryKind::Acceleration;
+                if known.is_none() && is_still && matches!(line.source, Source::Boundary(_)) {
                     if let Source::Boundary(b) = line.source {
                         owners.support(b, s);
                     }
@@ -189,26 +198,44 @@ impl Loading {
                         }
                         Source::Load(kind) => force_pattern(model, kind),
                     });
-                    kinds.push(line.name.split('.').next().map_or("", |k| match k {
+                    families.push(line.name.split('.').next().map_or("", |k| match k {
                         "cload" => "cload",
                         "dload" => "dload",
                         "dsload" => "dsload",
                         _ => "boundary",
                     }));
                     now.push(Course::Hold);
+                    kinds_now.push(BoundaryKind::Displacement);
                     of_key.insert(key, index);
                     index
                 });
                 if let Source::Boundary(b) = line.source {
                     owners.claim(b, column, s);
                 }
-                now[column] = match line.amplitude {
-                    Some(amplitude) => Course::Curve { magnitude: line.magnitude, amplitude },
-                    None => Course::Ramp { magnitude: line.magnitude },
+                now[column] = match (line.amplitude, without_amplitude(step.default_amplitude, line.magnitude)) {
+                    (Some(amplitude), _) => Course::Curve { magnitude: line.magnitude, amplitude },
+                    (None, Course::Ramp { magnitude }) if line.kind == BoundaryKind::Acceleration => {
+                        // Where the deck has left an acceleration; anything else begins without one.
+                        let was = match (now[column], kinds_now[column]) {
+                            (Course::Step { magnitude }, BoundaryKind::Acceleration) => magnitude,
+                            _ => 0.0,
+                        };
+                        Course::Line { from: was, magnitude }
+                    }
+                    (None, course) => course,
                 };
+                kinds_now[column] = line.kind;
                 column_of_line.push(Some(column));
             }
+            for (course, kind) in now.iter().zip(&kinds_now) {
+                if let (Course::Curve { amplitude, .. }, BoundaryKind::Velocity | BoundaryKind::Acceleration) =
+                    (course, kind)
+                {
+                    integrals.prepare(model, *amplitude, begun);
+                }
+            }
             courses.push(now);
+            kinds.push(kinds_now);
         }
         if !owners.conflicts.is_empty() {
             return Err(owners.conflicts);
@@ -216,6 +243,10 @@ impl Loading {
         for step in &mut courses {
             step.resize(columns.len(), Course::Hold);
         }
+        for step in &mut kinds {
+            step.resize(columns.len(), BoundaryKind::Displacement);
+        }
+        let rates_initial = columns.iter().map(|column| rate_initial(model, column)).collect();
         let mut inputs = Vec::new();
         let mut input_columns = Vec::new();
         for (line, port) in input_lines(model) {
@@ -224,26 +255,60 @@ impl Loading {
                 input_columns.push(column);
             }
         }
-        Ok(Self { columns, courses, input_columns, inputs })
+        Ok(Self { columns, courses, kinds, rates_initial, input_columns, inputs, integrals })
     }
 }
 
 impl Loading {
+    /// Displacement, velocity and acceleration of a column that prescribes a direction, or the value of a load and its slope, at a time
+    /// of a step; `course` is that of the deck or with another magnitude, `start` what the column had at the start of the step.
+    pub fn motion(
+        &self,
+        model: &Model,
+        step: usize,
+        column: usize,
+        course: Course,
+        start: ColumnMotion,
+        at: &StepTime,
+    ) -> ColumnMotion {
+        self.integrals.motion_at(model, course, self.kinds[step][column], start, at)
+    }
+
     /// Coefficients of the columns at the end of every step, as the deck has them.
     pub fn step_ends(&self, model: &Model) -> Vec<Vec<f64>> {
         let mut ends: Vec<Vec<f64>> = Vec::with_capacity(self.courses.len());
+        let start = |&rate: &f64| ColumnMotion { rate, ..Default::default() };
+        let mut motions: Vec<ColumnMotion> = self.rates_initial.iter().map(start).collect();
         let mut begun = 0.0;
         for (s, courses) in self.courses.iter().enumerate() {
             let period = model.steps[s].procedure.period();
-            let value = |(j, course): (usize, &Course)| {
-                let start = ends.last().map_or(0.0, |last| last[j]);
-                value_at(model, *course, s, start, begun, period)
-            };
-            ends.push(courses.iter().enumerate().map(value).collect());
+            let at = StepTime { step_start: begun, step_time: period, period };
+            for (column, (motion, &course)) in motions.iter_mut().zip(courses).enumerate() {
+                *motion = self.motion(model, s, column, course, *motion, &at);
+            }
+            ends.push(motions.iter().map(|motion| motion.value).collect());
             begun += period;
         }
         ends
     }
+}
+
+fn without_amplitude(default: DefaultAmplitude, magnitude: f64) -> Course {
+    match default {
+        DefaultAmplitude::Ramp => Course::Ramp { magnitude },
+        DefaultAmplitude::Step => Course::Step { magnitude },
+    }
+}
+
+/// Initial velocity of the direction that a column prescribes: that of its first node, which the reader has all nodes have that an
+/// acceleration moves.
+fn rate_initial(model: &Model, column: &Column) -> f64 {
+    let Column::Displacement(entries) = column else { return 0.0 };
+    let of = |&(node, direction, _): &(NodeId, u8, f64)| {
+        let found = model.initial_velocities.iter().find(|v| (v.node, v.direction) == (node, direction));
+        found.map_or(0.0, |velocity| velocity.value)
+    };
+    entries.first().map_or(0.0, of)
 }
 
 /// Each prescribed direction follows one column; a node named twice in a set counts once.
@@ -255,11 +320,25 @@ fn merge_last(entries: Vec<(NodeId, u8, f64)>) -> Vec<(NodeId, u8, f64)> {
     merged
 }
 
-/// A step that does not mention a line: it holds its value, but a curve on total time goes on.
-fn carried_over(model: &Model, course: Course) -> Course {
-    match course {
-        Course::Curve { amplitude, .. } if model.amplitudes[amplitude.index()].clock == AmplitudeClock::Total => course,
-        _ => Course::Hold,
+/// A step that does not mention a line: it holds its value, but a curve on total time goes on. A velocity or acceleration keeps what it
+/// had at the end of the step before, which begins at total time `begun`.
+fn carried_over(model: &Model, course: Course, kind: BoundaryKind, step: usize, begun: f64) -> Course {
+    if let Course::Curve { amplitude, .. } = course
+        && model.amplitudes[amplitude.index()].clock == AmplitudeClock::Total
+    {
+        return course;
+    }
+    match (kind, course) {
+        (BoundaryKind::Displacement, _) => Course::Hold,
+        (_, Course::Ramp { magnitude } | Course::Line { magnitude, .. } | Course::Step { magnitude }) => {
+            Course::Step { magnitude }
+        }
+        (_, Course::Curve { .. }) => {
+            let before = step - 1;
+            let period = model.steps[before].procedure.period();
+            Course::Step { magnitude: value_at(model, course, before, 0.0, begun, period) }
+        }
+        (_, Course::Hold) => Course::Hold,
     }
 }
 
@@ -300,25 +379,5 @@ impl Owners {
             ),
             "prescribe each direction through one set, the same in every step",
         ));
-    }
-}
-
-/// Value of a column at a moment of a step.
-pub fn value_at(model: &Model, course: Course, step: usize, start_value: f64, step_start: f64, step_time: f64) -> f64 {
-    let period = model.steps[step].procedure.period();
-    // Beyond its period a step stands still.
-    let time = step_time.min(period);
-    match course {
-        Course::Hold => start_value,
-        Course::Ramp { magnitude } if time >= period => magnitude,
-        Course::Ramp { magnitude } => start_value + (magnitude - start_value) * (time / period),
-        Course::Curve { magnitude, amplitude } => {
-            let amplitude = &model.amplitudes[amplitude.index()];
-            let clock = match amplitude.clock {
-                AmplitudeClock::Step => time,
-                AmplitudeClock::Total => step_start + time,
-            };
-            magnitude * amplitude.evaluate(clock)
-        }
     }
 }

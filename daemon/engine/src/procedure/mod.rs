@@ -1,6 +1,7 @@
 //! Procedures: how time advances through the steps of a deck.
 
 mod accept;
+pub mod courses;
 pub mod enforcement;
 mod failure;
 mod impact;

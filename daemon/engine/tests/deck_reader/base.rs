@@ -71,6 +71,12 @@ pub fn with(from: &str, to: &str) -> String {
     BASE.replacen(from, to, 1)
 }
 
+/// A static deck like the base deck as an explicit analysis of the same length: the top moves with the velocity.
+pub fn explicit_deck(text: &str) -> String {
+    let text = text.replace("*STATIC\n0.1, 1.\n", "*DYNAMIC, EXPLICIT\n, 1.\n");
+    text.replace("*BOUNDARY\nTOP, 3", "*BOUNDARY, TYPE=VELOCITY\nTOP, 3")
+}
+
 pub fn read(text: &str) -> Reading {
     read_text(text, Dialect::Abaqus)
 }

@@ -2,7 +2,7 @@
 
 use overclosure::deck::{FEATURES, Family, Offer, RULES};
 use overclosure::diagnostic::Severity;
-use overclosure::model::Dialect;
+use overclosure::model::{Dialect, InteractionId};
 
 use crate::base::*;
 
@@ -11,7 +11,7 @@ const BEHAVIOR: &str = "*SURFACE BEHAVIOR";
 
 /// The base deck as an explicit analysis, with another `*SURFACE BEHAVIOR`.
 fn explicit(behavior: &str) -> String {
-    with(LAW, behavior).replace("*STATIC\n0.1, 1.\n", "*DYNAMIC, EXPLICIT\n, 1.\n")
+    explicit_deck(&with(LAW, behavior))
 }
 
 /// Asserts an error of each of these kinds on a deck.
@@ -28,7 +28,7 @@ fn the_exponential_law_never_prevents_separation() {
     let always = (BEHAVIOR, "the exponential law cannot be combined with NO SEPARATION in any analysis");
     let standard = (BEHAVIOR, "in implicit and static analyses NO SEPARATION belongs to hard contact");
     refuses_all(&with(LAW, behavior), &[always, standard]);
-    refuses_all(&explicit(behavior), &[always, ("*DYNAMIC", "not supported")]);
+    refuses(&explicit(behavior), always.0, always.1);
     let listed = listing(&read(&explicit(behavior)).diagnostics);
     assert!(!listed.contains(standard.1), "{listed}");
 }
@@ -126,13 +126,7 @@ fn augmented_lagrange_does_not_debond() {
 #[test]
 fn modified_hard_contact_belongs_to_standard() {
     let text = explicit("\n").replace("*NODE PRINT", "*CONTACT CONTROLS, MAXCHP=1, UERRMX=0.1\n*NODE PRINT");
-    refuses_all(
-        &text,
-        &[
-            ("*CONTACT CONTROLS", "modified hard contact is not available for contact pairs of explicit"),
-            ("*DYNAMIC", "not supported"),
-        ],
-    );
+    refuses(&text, "*CONTACT CONTROLS", "modified hard contact is not available for contact pairs of explicit");
 }
 
 #[test]
@@ -143,15 +137,21 @@ fn augmented_lagrange_belongs_to_standard() {
 
 #[test]
 fn a_rigid_surface_is_not_the_secondary_one_of_kinematic_contact() {
-    let rigid = explicit("\n").replace("*STEP\n", "*RIGID BODY, ELSET=UPPER, REF NODE=15\n*STEP\n");
+    let rigid = explicit("\n")
+        .replace("*STEP\n", "*RIGID BODY, ELSET=UPPER, REF NODE=15\n*STEP\n")
+        .replace("TOP, 1, 2\n", "15, 1, 2\n")
+        .replace("TOP, 3, 3", "15, 3, 3");
     let message = "a rigid surface cannot be the secondary one of kinematic contact";
-    refuses(&rigid, "*CONTACT PAIR", message);
-    for text in [
-        rigid.replace("SMALL SLIDING", "MECHANICAL CONSTRAINT=PENALTY"),
-        rigid.replace("SECOND, FIRST", "FIRST, SECOND"),
-    ] {
+    for (weight, is_wrong) in [("0", true), ("0.5", true), ("1", false)] {
+        let text = rigid.replace("SMALL SLIDING", &format!("SMALL SLIDING, WEIGHT={weight}"));
         let listed = listing(&read(&text).diagnostics);
-        assert!(!listed.contains(message), "{listed}");
+        assert_eq!(listed.contains(message), is_wrong, "{listed}");
+        let penalty = text.replace("SMALL SLIDING", "SMALL SLIDING, MECHANICAL CONSTRAINT=PENALTY");
+        assert!(read(&penalty).diagnostics.is_empty(), "{}", listing(&read(&penalty).diagnostics));
+    }
+    // Without WEIGHT the rigid surface is the primary one, whichever is named first.
+    for text in [rigid.clone(), rigid.replace("SECOND, FIRST", "FIRST, SECOND")] {
+        assert_eq!(model(&text).pairs[0].name, "FIRST_SECOND");
     }
 }
 
@@ -197,10 +197,11 @@ fn the_data_of_a_refused_law_are_not_complained_about() {
 fn interactions_and_pairs_may_stand_in_explicit_steps() {
     let card = "*SURFACE INTERACTION, NAME=SI\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n1e6\n\
         *CONTACT PAIR, INTERACTION=SI, SMALL SLIDING\nSECOND, FIRST\n";
-    let bare = with(card, "").replace("*STATIC\n0.1, 1.\n", "*DYNAMIC, EXPLICIT\n, 1.\n");
+    let bare = explicit_deck(&with(card, ""));
     let moved = bare.replace("*NODE PRINT", &format!("{card}*NODE PRINT"));
     let found = read(&moved).diagnostics;
-    assert_eq!(found.len(), 1, "{}", listing(&found));
+    assert!(found.is_empty(), "{}", listing(&found));
+    assert_eq!((model(&moved).pairs.len(), model(&moved).pairs[0].interaction), (1, InteractionId(0)));
     let wrong = moved.replace("=LINEAR\n1e6", "=EXPONENTIAL, NO SEPARATION\n0.01, 5.");
     refuses(&wrong, BEHAVIOR, "the exponential law cannot be combined with NO SEPARATION in any analysis");
 }

@@ -7,6 +7,7 @@ mod connectors;
 mod contact;
 mod contact_steps;
 mod damage;
+mod dynamics;
 mod equations;
 mod restart;
 mod rules;

@@ -302,7 +302,7 @@ fn contact_pairs_are_checked() {
     let cases = [
         (", SMALL SLIDING", ", TYPE=MORTAR", "TYPE=MORTAR is not supported"),
         (", SMALL SLIDING", ", TIED", "TIED is not supported"),
-        (", SMALL SLIDING", ", WEIGHT=0.1", "WEIGHT is not supported"),
+        (", SMALL SLIDING", ", WEIGHT=0.1", "WEIGHT belongs to pairs of explicit analyses"),
         ("INTERACTION=SI,", "INTERACTION=S1,", "no surface interaction S1"),
         ("INTERACTION=SI, ", "", "parameter INTERACTION is missing"),
         ("SECOND, FIRST", "SECOND, THIRD", "no surface THIRD"),
@@ -369,7 +369,7 @@ fn boundaries_are_checked() {
         ("*BOUNDARY\nTOP, 3", "*BOUNDARY, AMPLITUDE=A\nTOP, 3", "no amplitude A"),
         ("*BOUNDARY\nTOP, 3", "*BOUNDARY, OP=NEW\nTOP, 3", "OP=NEW would free degree of freedom 1 of node 1"),
         ("*BOUNDARY\nTOP, 3", "*BOUNDARY, FIXED\nTOP, 3", "FIXED is not supported"),
-        ("*BOUNDARY\nTOP, 3", "*BOUNDARY, TYPE=VELOCITY\nTOP, 3", "TYPE=VELOCITY is not supported"),
+        ("*BOUNDARY\nTOP, 3", "*BOUNDARY, TYPE=VELOCITY\nTOP, 3", "TYPE=VELOCITY in a static step"),
     ];
     for (from, to, fragment) in cases {
         refuses(&with(from, to), "*BOUNDARY", fragment);
@@ -476,7 +476,7 @@ fn steps_are_checked() {
     assert_eq!(control("*STATIC\n0., 0., 0., 0.\n"), (1.0, 1.0, 1e-5, 1.0, false));
     let cases = [
         ("*STATIC\n0.1, 1.\n", "", "*STEP", "no procedure"),
-        ("*STATIC\n0.1, 1.\n", "*DYNAMIC\n0.1, 1.\n", "*DYNAMIC", "not supported"),
+        ("*STATIC\n0.1, 1.\n", "*VISCO\n0.1, 1.\n", "*VISCO", "not supported"),
         ("*STATIC\n", "*STATIC, STABILIZE\n", "*STATIC", "STABILIZE is not supported"),
         ("*STATIC\n", "*STATIC, DIRECT=NO STOP\n", "*STATIC", "DIRECT=NO STOP is not supported"),
         ("*STATIC\n", "*STATIC\n*STATIC\n", "*STATIC", "a procedure already"),
@@ -487,7 +487,7 @@ fn steps_are_checked() {
         ("*STATIC\n0.1, 1.", "*STATIC, DIRECT\n0.001, 1.", "*STATIC", "1000 fixed increments are needed"),
         ("*STEP\n", "*STEP, INC=0\n", "*STEP", "INC=0"),
         ("*STEP\n", "*STEP, PERTURBATION\n", "*STEP", "PERTURBATION is not supported"),
-        ("*STEP\n", "*STEP, AMPLITUDE=STEP\n", "*STEP", "AMPLITUDE=STEP is not supported"),
+        ("*STEP\n", "*STEP, AMPLITUDE=SMOOTH\n", "*STEP", "AMPLITUDE=SMOOTH is not known"),
         ("*STEP\n", "*STEP\n*STATIC\n*END STEP\n*STEP, NAME=step-1\n", "*STEP", "there is a step step-1 already"),
         ("*STEP\n", "*STEP\n*STEP\n", "*STEP", "the step before is not closed"),
         ("*STEP\n", "*END STEP\n*STEP\n", "*END STEP", "no step to end"),

@@ -44,7 +44,9 @@ impl Builder<'_> {
             self.model.interactions[id.index()].enforcement = enforcement;
             return !card.faulty;
         };
-        let beside_others = asked.no_separation || asked.augmented || asked.penalty;
+        // In explicit analyses linear and tabular laws go on into tension.
+        let stays = asked.no_separation && !(self.is_explicit && law != Law::Exponential);
+        let beside_others = stays || asked.augmented || asked.penalty;
         if card.faulty {
             return false;
         }
@@ -76,16 +78,19 @@ impl Builder<'_> {
         let pressure = row.real(1, "pressure p0", None, self.report);
         match self.model.dialect {
             Dialect::Abaqus => {
-                if !row.text(2).is_empty() {
+                row.at_most(3, self.report);
+                let mut stiffness_max = None;
+                if !row.text(2).is_empty() && self.is_explicit {
+                    stiffness_max = Some(row.real(2, "largest stiffness", None, self.report)?);
+                } else if !row.text(2).is_empty() {
                     let message = "the largest stiffness is ignored: it has a meaning in explicit analyses only";
                     self.report.warning(row.at, BEHAVIOR, message, "");
                 }
-                row.at_most(3, self.report);
                 self.checked(
                     LawParameters::Exponential {
                         clearance_at_zero_pressure: clearance?,
                         pressure_at_zero_clearance: pressure?,
-                        stiffness_max: None,
+                        stiffness_max,
                     },
                     row.at,
                 )

@@ -1,15 +1,16 @@
 //! Combinations of contact options against the tables of availability and rules, for every procedure that the deck asks for.
 
 use crate::diagnostic::Severity;
-use crate::model::{InteractionId, SurfaceKind};
+use crate::model::{InteractionId, MechanicalConstraint, SurfaceId};
 
 use super::super::availability::{Blame, FEATURES, Family, Feature, Offer};
-use super::super::card::{Body, Card};
+use super::super::card::Card;
 use super::super::facts::Facts;
-use super::super::lex::{key, real, unquoted};
+use super::super::lex::{key, unquoted};
 use super::super::report::At;
 use super::super::rules::{RULES, Rule};
 use super::Builder;
+use super::explicit_pairs::{constraint_of, weight_of};
 use super::layout::{Layout, StepCards};
 
 /// What the deck as a whole says about its procedures.
@@ -48,13 +49,9 @@ impl Builder<'_> {
         let mut reported = Vec::new();
         for index in 0..self.interaction_lines.len() {
             let id = InteractionId(index as u32);
-            let name = key(&self.model.interactions[index].name);
-            let of_surfaces = self.interaction_lines[index].keyword == "*SURFACE INTERACTION";
-            let pairs: Vec<&Card> = (pair_cards.iter().copied())
-                .filter(|card| {
-                    of_surfaces && card.parameters.value("INTERACTION").is_some_and(|used| key(used) == name)
-                })
-                .collect();
+            let of_surfaces = !matches!(self.interaction_lines[index].keyword, "*GAP" | "*INTERFACE");
+            let pairs: Vec<&Card> =
+                (pair_cards.iter().copied()).filter(|card| of_surfaces && self.is_about(card, id)).collect();
             for family in families(&procedures, of_surfaces, !pairs.is_empty()) {
                 let facts = self.interaction_facts(id, family, &procedures);
                 let lines = &self.interaction_lines[index];
@@ -105,62 +102,33 @@ impl Builder<'_> {
 
     /// Facts of an interaction for each pair of a `*CONTACT PAIR` card.
     fn pair_facts(&self, facts: Facts, card: &Card, layout: &Layout<'_>) -> Vec<Facts> {
-        let kinematic = facts.kinematic && card.parameters.word("MECHANICAL CONSTRAINT") != "PENALTY";
-        let weight = card.parameters.value("WEIGHT").and_then(|text| real(text.as_bytes()).ok());
+        let constraint = constraint_of(card);
         let rows = card.lines().iter().map(|line| line.row(card.keyword.name));
         rows.map(|row| {
-            let [secondary, primary] = [0, 1].map(|item| unquoted(row.text(item)));
-            let is_pure = match weight {
-                Some(weight) => weight == 0.0 || weight == 1.0,
-                None => {
-                    self.is_of_nodes(secondary, layout)
-                        || self.is_rigid(secondary, layout)
-                        || self.is_rigid(primary, layout)
+            let [first, second] = [0, 1].map(|item| unquoted(row.text(item)));
+            let found = [first, second].map(|name| self.surfaces.find(name).map(SurfaceId));
+            let roles = match found {
+                [Some(first), Some(second)] if facts.family == Family::ExplicitPairs => {
+                    Some(self.roles(first, second, constraint, weight_of(card)))
                 }
+                _ => None,
             };
+            let rigid = |surface| self.is_rigid_surface(surface);
             Facts {
-                kinematic,
-                balanced: facts.family == Family::ExplicitPairs && !is_pure,
-                rigid_secondary: self.is_rigid(secondary, layout),
+                kinematic: facts.kinematic && constraint == MechanicalConstraint::Kinematic,
+                balanced: roles.is_some_and(|roles| roles.weight != 1.0),
+                rigid_secondary: roles
+                    .is_some_and(|roles| rigid(roles.secondary) || (roles.weight != 1.0 && rigid(roles.primary))),
                 debonding: layout.debonds().any(|debond| {
                     let named = |parameter: &str, surface: &str| {
                         debond.parameters.value(parameter).is_none_or(|name| key(name) == key(surface))
                     };
-                    named("SLAVE", secondary) && named("MASTER", primary)
+                    named("SLAVE", first) && named("MASTER", second)
                 }),
                 ..facts
             }
         })
         .collect()
-    }
-
-    fn is_of_nodes(&self, surface: &str, layout: &Layout<'_>) -> bool {
-        layout.surface(surface).is_some_and(|card| card.parameters.word("TYPE") == "NODE")
-    }
-
-    /// Whether a surface is analytical, or belongs to a rigid body.
-    fn is_rigid(&self, surface: &str, layout: &Layout<'_>) -> bool {
-        let Some(card) = layout.surface(surface) else { return false };
-        if matches!(card.parameters.word("TYPE").as_str(), "CYLINDER" | "REVOLUTION" | "SEGMENTS" | "USER") {
-            return true;
-        }
-        let rigid = layout.all.iter().filter(|card| card.keyword.name == "*RIGID BODY");
-        let sets: Vec<String> = rigid.filter_map(|card| card.parameters.value("ELSET").map(key)).collect();
-        let named =
-            matches!(&card.body, Body::Faces(faces) if faces.names.iter().any(|(name, ..)| sets.contains(&key(name))));
-        named || sets.iter().any(|set| self.has_face_of(surface, set))
-    }
-
-    fn has_face_of(&self, surface: &str, set: &str) -> bool {
-        let (Some(surface), Some(set)) = (self.surfaces.find(surface), self.element_sets.find(set)) else {
-            return false;
-        };
-        let surface = self.model.mesh.surfaces.get(surface as usize);
-        let Some(elements) = self.model.mesh.element_sets.get(set as usize) else { return false };
-        match surface.map(|surface| &surface.kind) {
-            Some(SurfaceKind::Faces(faces)) => faces.iter().any(|face| elements.elements.contains(&face.element)),
-            _ => false,
-        }
     }
 
     fn judge(&mut self, facts: &Facts, lines: &Lines<'_>, reported: &mut Vec<(At, &'static str, Family)>) {

@@ -31,7 +31,8 @@ impl Builder<'_> {
         ContactHistory {
             all_pairs: StatedControls::default(),
             own: vec![StatedControls::default(); self.model.pairs.len()],
-            active: vec![true; self.model.pairs.len()],
+            // Explicit steps add their pairs.
+            active: vec![!self.is_explicit; self.model.pairs.len()],
             frictions: self.frictions_of_interactions(),
             interferences: vec![None; self.model.pairs.len()],
         }
@@ -48,6 +49,9 @@ impl Builder<'_> {
         step: u32,
         history: &mut ContactHistory,
     ) -> StepContact {
+        for event in self.pair_events.iter().filter(|event| event.step == step as usize) {
+            history.active[event.pair] = event.active;
+        }
         let mut removed_by_new = false;
         let mut cards = cards.cards.iter().copied().peekable();
         while let Some(card) = cards.next() {

@@ -1,6 +1,6 @@
 //! `*CONTACT DAMPING`.
 
-use crate::model::{ContactDamping, InteractionId};
+use crate::model::{ContactDamping, DampingDefinition, ExplicitDamping, InteractionId};
 
 use super::super::card::Card;
 use super::super::facts::DampingKind;
@@ -13,6 +13,9 @@ const DAMPING: &str = "*CONTACT DAMPING";
 impl Builder<'_> {
     /// Gives an interaction its damping; whether the card is sound.
     pub(super) fn contact_damping(&mut self, card: &Card, interaction: InteractionId) -> bool {
+        if self.is_explicit {
+            return self.explicit_damping(card, interaction);
+        }
         let tangent_fraction = self.tangent_fraction(card, DAMPING, 0.0);
         if card.parameters.word("DEFINITION") == "CRITICALDAMPINGFRACTION" {
             self.interaction_lines[interaction.index()].damping_kind = Some(DampingKind::CriticalFraction);
@@ -47,6 +50,36 @@ impl Builder<'_> {
         self.model.interactions[interaction.index()].damping =
             Some(ContactDamping { coefficient, clearance, fraction, tangent_fraction });
         wrong.is_empty() && !card.faulty
+    }
+
+    /// Damping of explicit analyses: one item, which acts while surfaces touch.
+    fn explicit_damping(&mut self, card: &Card, interaction: InteractionId) -> bool {
+        let tangent_fraction = self.tangent_fraction(card, DAMPING, 1.0);
+        let critical = card.parameters.word("DEFINITION") == "CRITICALDAMPINGFRACTION";
+        let (kind, what) = if critical {
+            (DampingKind::CriticalFraction, "critical damping fraction")
+        } else {
+            (DampingKind::Coefficient, "damping coefficient")
+        };
+        self.interaction_lines[interaction.index()].damping_kind = Some(kind);
+        let Some(row) = card.single_row(what, self.report) else { return false };
+        row.at_most(3, self.report);
+        if row.fields.iter().skip(1).any(|field| !field.is_empty()) {
+            let message = "clearance and part of it behind the coefficient are ignored: in explicit analyses contact is damped while surfaces touch";
+            self.report.warning(row.at, DAMPING, message, "leave them out");
+        }
+        let value = row.real(0, what, None, self.report);
+        let (Some(value), Some(tangent_fraction)) = (value, tangent_fraction) else { return false };
+        if value < 0.0 {
+            let message = format!("the {what} {value} is negative");
+            self.report.error(row.at, DAMPING, message, "give 0 for no damping, or a positive number");
+            return false;
+        }
+        let definition =
+            if critical { DampingDefinition::CriticalFraction(value) } else { DampingDefinition::Coefficient(value) };
+        self.model.interactions[interaction.index()].explicit_damping =
+            ExplicitDamping { definition, tangent_fraction };
+        !card.faulty
     }
 
     /// `TANGENT FRACTION`, not negative; `None` when it is not, which is reported.

@@ -41,7 +41,7 @@ impl Builder<'_> {
     /// [`Builder::element_interaction`].
     pub(super) fn build_interactions(&mut self, layout: &Layout<'_>) {
         let mut open = None;
-        for card in layout.model.iter().chain(&layout.explicit) {
+        for (_, card) in layout.with_explicit_steps() {
             open = self.interaction_or_option(card, open);
         }
         for (name, id) in (0..).zip(&self.interaction_names) {
@@ -138,7 +138,12 @@ impl Builder<'_> {
         Some(self.push_interaction(interaction, card, card.faulty))
     }
 
-    fn push_interaction(&mut self, interaction: SurfaceInteraction, card: &Card, faulty: bool) -> InteractionId {
+    pub(super) fn push_interaction(
+        &mut self,
+        interaction: SurfaceInteraction,
+        card: &Card,
+        faulty: bool,
+    ) -> InteractionId {
         let id = InteractionId(self.model.interactions.len() as u32);
         self.model.interactions.push(interaction);
         self.interaction_lines.push(InteractionLines {

@@ -10,8 +10,6 @@ use super::super::report::{At, Report};
 pub struct Layout<'d> {
     /// Before the first `*STEP`.
     pub model: Vec<&'d Card>,
-    /// Interactions and pairs in explicit steps, where they may stand.
-    pub explicit: Vec<&'d Card>,
     /// Steps in order.
     pub steps: Vec<StepCards<'d>>,
     /// All cards, in order.
@@ -24,6 +22,8 @@ pub struct StepCards<'d> {
     pub opening: &'d Card,
     /// What follows up to `*END STEP`.
     pub cards: Vec<&'d Card>,
+    /// Whether the procedure is `*DYNAMIC, EXPLICIT`: then interactions and pairs may stand in the step.
+    is_explicit: bool,
 }
 
 const STEP: &str = "*STEP";
@@ -32,14 +32,17 @@ const STEP: &str = "*STEP";
 pub fn arrange<'d>(cards: &'d [Card], stopped: bool, report: &mut Report) -> Layout<'d> {
     let mut layout = Layout { all: cards, ..Layout::default() };
     let mut open = false;
-    for card in cards {
+    for (position, card) in cards.iter().enumerate() {
         match card.keyword.name {
             STEP => {
                 if open {
                     report.error(card.at, STEP, "the step before is not closed", "write *END STEP before this line");
                 }
                 open = true;
-                layout.steps.push(StepCards { opening: card, cards: Vec::new() });
+                let within = cards[position + 1..].iter();
+                let mut within = within.take_while(|card| !matches!(card.keyword.name, STEP | "*END STEP"));
+                let is_explicit = within.any(is_explicit_procedure);
+                layout.steps.push(StepCards { opening: card, cards: Vec::new(), is_explicit });
             }
             "*END STEP" if !open => {
                 report.error(
@@ -98,12 +101,9 @@ impl<'d> Layout<'d> {
                 }
             }
             let is_contact = card.keyword.placement == Placement::Interaction
-                || matches!(name, "*SURFACE INTERACTION" | "*CONTACT PAIR");
-            if is_contact && self.steps.last().is_some_and(StepCards::is_explicit) {
-                self.explicit.push(card);
-                return;
-            }
-            if model_only {
+                || matches!(name, "*SURFACE INTERACTION" | "*CONTACT PAIR" | "*CLEARANCE");
+            let is_history = is_contact && self.steps.last().is_some_and(StepCards::is_explicit);
+            if model_only && !is_history {
                 return report.error(
                     card.at,
                     name,
@@ -135,9 +135,26 @@ impl Layout<'_> {
         self.all.iter().any(is_refused)
     }
 
+    /// Cards of the model part, then those of explicit steps with the position of their step.
+    pub fn with_explicit_steps(&self) -> impl Iterator<Item = (Option<usize>, &'_ Card)> {
+        let steps = self.steps.iter().enumerate().filter(|(_, step)| step.is_explicit());
+        let of_steps = steps.flat_map(|(position, step)| step.cards.iter().map(move |&card| (Some(position), card)));
+        self.model.iter().map(|&card| (None, card)).chain(of_steps)
+    }
+
     /// Every `*CONTACT PAIR`, wherever it may stand.
     pub fn contact_pairs(&self) -> impl Iterator<Item = &'_ Card> {
-        self.model.iter().chain(&self.explicit).copied().filter(|card| card.keyword.name == "*CONTACT PAIR")
+        self.with_explicit_steps().map(|(_, card)| card).filter(|card| card.keyword.name == "*CONTACT PAIR")
+    }
+
+    /// Whether a step is `*DYNAMIC, EXPLICIT`: the deck is one of Abaqus/Explicit.
+    pub fn is_explicit(&self) -> bool {
+        self.steps.iter().any(StepCards::is_explicit)
+    }
+
+    /// Whether a step is `*DYNAMIC`, explicit or not.
+    pub fn has_dynamics(&self) -> bool {
+        self.all.iter().any(|card| card.keyword.name == "*DYNAMIC")
     }
 
     /// Every `*DEBOND`.
@@ -158,13 +175,17 @@ impl Layout<'_> {
 impl StepCards<'_> {
     /// Whether the procedure is `*DYNAMIC, EXPLICIT`.
     pub fn is_explicit(&self) -> bool {
-        self.cards.iter().any(|card| card.keyword.name == "*DYNAMIC" && card.parameters.has("EXPLICIT"))
+        self.is_explicit
     }
 
     /// Whether a keyword of the step was refused: it may have been the procedure.
     pub fn has_refused_keywords(&self) -> bool {
         self.cards.iter().any(|card| is_refused(card))
     }
+}
+
+fn is_explicit_procedure(card: &Card) -> bool {
+    card.keyword.name == "*DYNAMIC" && card.parameters.has("EXPLICIT")
 }
 
 /// Whether the keyword of a card is not supported.

@@ -90,8 +90,9 @@ impl Builder<'_> {
             }
         };
         if nodes.is_empty() {
-            let message =
-                format!("degree of freedom {dof} is ignored: only reference nodes of rigid bodies have rotations");
+            let message = format!(
+                "degree of freedom {dof} is ignored: only reference nodes of rigid bodies and nodes of ROTARYI have rotations"
+            );
             self.report.warning(row.at, CLOAD, message, "apply the moment as forces");
             return None;
         }
@@ -169,8 +170,12 @@ impl Builder<'_> {
         }
         self.has_density(row, &region.members);
         let section = |element: &ElementId| self.model.mesh.connectors.get(element);
-        if region.members.iter().all(|element| matches!(section(element), Some(Connector::Spring { .. }))) {
-            let message = format!("gravity on {} has no effect: springs have no mass", region.name);
+        if region
+            .members
+            .iter()
+            .all(|element| matches!(section(element), Some(Connector::Spring { .. } | Connector::Dashpot { .. })))
+        {
+            let message = format!("gravity on {} has no effect: springs and dashpots have no mass", region.name);
             self.report.warning(row.at, DLOAD, message, "give the weight to elements with mass, or add MASS elements");
         }
         let kind = LoadKind::Gravity { elements: region.members, direction };

@@ -1,6 +1,6 @@
-//! `*MATERIAL`, `*ELASTIC`, `*DENSITY` and `*AMPLITUDE`.
+//! `*MATERIAL`, `*ELASTIC`, `*DENSITY`, `*DAMPING` and `*AMPLITUDE`.
 
-use crate::model::{Amplitude, AmplitudeClock, Material};
+use crate::model::{Amplitude, AmplitudeClock, ElementId, Material, Rayleigh};
 
 use super::super::card::Card;
 use super::super::keywords::Placement;
@@ -19,6 +19,9 @@ struct Draft {
     /// Modulus and ratio; the inner value is missing when they were given but bad.
     elastic: Option<Option<(f64, f64)>>,
     density: Option<f64>,
+    damping: Rayleigh,
+    /// A `*DENSITY` was given, good or bad.
+    has_density: bool,
     /// A keyword that describes the material was refused.
     refused: bool,
 }
@@ -38,6 +41,8 @@ impl Builder<'_> {
                             at: card.at,
                             elastic: None,
                             density: None,
+                            damping: Rayleigh::default(),
+                            has_density: false,
                             refused: false,
                         });
                         open = true;
@@ -73,17 +78,48 @@ impl Builder<'_> {
                 let message = format!("material {} has no *ELASTIC", draft.name);
                 self.report.error(draft.at, MATERIAL, message, "add *ELASTIC with Young's modulus and Poisson's ratio");
             }
-            if complete.is_none() {
+            if complete.is_none() || (draft.has_density && draft.density.is_none()) {
                 self.materials.mark_faulty(position);
             }
             let (youngs_modulus, poissons_ratio) = complete.unwrap_or((1.0, 0.0));
             self.model.materials.push(Material {
-                damping: Default::default(),
+                damping: draft.damping,
                 name: draft.name,
                 youngs_modulus,
                 poissons_ratio,
                 density: draft.density,
             });
+        }
+    }
+
+    /// Elements need mass in dynamic steps: their materials need densities. Damping needs a dynamic step.
+    pub(super) fn check_masses(&mut self, layout: &Layout<'_>) {
+        if !layout.has_dynamics() {
+            for card in layout.model.iter().filter(|card| card.keyword.name == "*DAMPING" || is_damped(card)) {
+                let message = "damping has no effect in a static step";
+                self.report.warning(card.at, card.keyword.name, message, "");
+            }
+            return;
+        }
+        let mesh = &self.model.mesh;
+        let mut first_of: Vec<Option<(ElementId, usize)>> = vec![None; self.model.materials.len()];
+        for (element, material) in (0..).map(ElementId).zip(&mesh.element_materials) {
+            // Solids of rigid bodies have copies without stiffness: what has no density there has no mass.
+            let needs = |material: &Material| material.density.is_none() && material.youngs_modulus > 0.0;
+            if self.model.materials.get(material.index()).is_some_and(needs) {
+                first_of[material.index()].get_or_insert((element, 0)).1 += 1;
+            }
+        }
+        for (position, (element, count)) in (0..).zip(first_of).filter_map(|(p, first)| Some((p, first?))) {
+            if self.materials.is_faulty(position) {
+                continue;
+            }
+            let label = mesh.element_labels[element.index()];
+            let message = format!(
+                "material {} has no density, and {count} elements of it need mass in a dynamic step, the first is element {label}",
+                self.materials.written(position)
+            );
+            self.report.error(self.materials.at(position), MATERIAL, message, "add *DENSITY to the material");
         }
     }
 
@@ -114,10 +150,19 @@ impl Builder<'_> {
     }
 }
 
+fn is_damped(card: &Card) -> bool {
+    matches!(card.keyword.name, "*MASS" | "*ROTARY INERTIA") && card.parameters.has("ALPHA")
+}
+
 impl Draft {
     fn add(&mut self, card: &Card, report: &mut Report) {
         let name = card.keyword.name;
+        if name == "*DAMPING" {
+            self.damping = rayleigh(card, report);
+            return;
+        }
         if name == "*DENSITY" {
+            self.has_density = true;
             let what = "density";
             let value = card.single_row(what, report).and_then(|row| row.real(0, "density", None, report));
             match value {
@@ -151,6 +196,32 @@ impl Draft {
             report.error(row.at, name, message, "give a ratio above -1 and below 0.5");
         }
         self.elastic = Some(Some((modulus, ratio)));
+    }
+}
+
+/// `*DAMPING`: factors of mass and stiffness.
+fn rayleigh(card: &Card, report: &mut Report) -> Rayleigh {
+    const DAMPING: &str = "*DAMPING";
+    if let Some(line) = card.first_line() {
+        report.error(line.at, DAMPING, "the factors are parameters: no data line is read", "write ALPHA= and BETA=");
+    }
+    if !card.faulty && !card.parameters.has("ALPHA") && !card.parameters.has("BETA") {
+        report.error(card.at, DAMPING, "neither ALPHA nor BETA is given", "give one of them, or both");
+    }
+    let mut factor = |name| not_negative(card, name, report).unwrap_or(0.0);
+    Rayleigh { alpha: factor("ALPHA"), beta: factor("BETA") }
+}
+
+/// Value of a parameter that is given, when it is a number from 0 on; otherwise it is reported.
+pub fn not_negative(card: &Card, name: &str, report: &mut Report) -> Option<f64> {
+    let text = card.parameters.value(name)?;
+    match real(text.as_bytes()) {
+        Ok(value) if value >= 0.0 => Some(value),
+        _ => {
+            let message = format!("{name}={} is not a number from 0 on", excerpt(text.as_bytes()));
+            report.error(card.at, card.keyword.name, message, "give 0 for no damping, or a positive number");
+            None
+        }
     }
 }
 

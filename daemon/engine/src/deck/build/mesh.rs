@@ -197,7 +197,7 @@ fn resolve_nodes(
             let remedy = if kind.is_solid() {
                 format!("collapsed elements are not solved: give {} different nodes, or use C3D6 or C3D4", labels.len())
             } else {
-                "give two different nodes; to the ground leads a SPRING1".into()
+                "give two different nodes; to the ground leads a SPRING1 or DASHPOT1".into()
             };
             report.error(at, ELEMENT, message, remedy);
             return None;
@@ -220,7 +220,7 @@ pub fn shape_fault(kind: ElementKind, coordinates: &Coordinates) -> Option<Strin
             .then(|| format!("is inverted or distorted: its Jacobian is {jacobian:.3e} at an integration point"));
     }
     // The line between the nodes gives the direction of these two.
-    let has_axis = matches!(kind, ElementKind::T3D2 | ElementKind::SpringA);
+    let has_axis = matches!(kind, ElementKind::T3D2 | ElementKind::SpringA | ElementKind::DashpotA);
     (has_axis && connector::length(coordinates) == 0.0).then(|| "has no length: its nodes are at the same place".into())
 }
 

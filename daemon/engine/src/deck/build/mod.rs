@@ -11,8 +11,11 @@ mod controls;
 mod damping;
 mod enforcement;
 mod equations;
+mod explicit;
+mod explicit_pairs;
 mod friction;
 mod gaps;
+mod initial;
 mod interactions;
 mod interference;
 mod layout;
@@ -23,6 +26,7 @@ mod names;
 mod output;
 mod pairs;
 mod prescribed;
+mod procedures;
 mod regions;
 mod rigid;
 mod sections;
@@ -36,6 +40,7 @@ use super::card::Deck;
 use super::report::{At, Report};
 use super::source::SourceMap;
 use budget::Budget;
+use explicit_pairs::PairEvent;
 use interactions::InteractionLines;
 use layout::Layout;
 use names::{Labels, Names};
@@ -77,6 +82,16 @@ struct Builder<'r> {
     faulty_pairs: FxHashSet<(SurfaceId, SurfaceId)>,
     /// Positions of pairs without SMALL SLIDING.
     finite_sliding: FxHashSet<usize>,
+    /// Sets of pairs of explicit decks.
+    contact_sets: Names,
+    /// Positions of the pairs of each.
+    contact_set_pairs: Vec<Vec<usize>>,
+    /// Pairs that explicit steps add and delete, in the order of the deck.
+    pair_events: Vec<PairEvent>,
+    /// Interaction of explicit pairs that name none.
+    default_interaction: Option<InteractionId>,
+    /// Whether the deck is one of Abaqus/Explicit.
+    is_explicit: bool,
     /// Values before the first step, which CalculiX reaches over it.
     early_boundaries: Vec<(At, Boundary)>,
     /// Lines of the contact pairs.
@@ -117,6 +132,11 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         pairs: FxHashSet::default(),
         faulty_pairs: FxHashSet::default(),
         finite_sliding: FxHashSet::default(),
+        contact_sets: Names::new("contact pair set"),
+        contact_set_pairs: Vec::new(),
+        pair_events: Vec::new(),
+        default_interaction: None,
+        is_explicit: layout.is_explicit(),
         early_boundaries: Vec::new(),
         pair_at: Vec::new(),
         step_lines: Vec::new(),
@@ -131,6 +151,9 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_materials(&layout);
     builder.build_sections(&layout);
     builder.build_rigid_bodies(&layout);
+    builder.place_rotary_inertia();
+    builder.check_masses(&layout);
+    builder.check_dashpots(&layout);
     builder.build_equations(&layout);
     builder.build_interactions(&layout);
     builder.build_pairs(&layout);
@@ -138,6 +161,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_amplitudes(&layout);
     builder.build_clearances(&layout);
     builder.build_initial_boundaries(&layout);
+    builder.build_initial_velocities(&layout);
     builder.build_steps(&layout);
     builder.check_prescribed(&layout);
     builder.check_equations();

@@ -63,7 +63,9 @@ impl Requests {
             elements: self.elements.iter().map(|(_, request)| request.clone()).collect(),
             contacts: self.contacts.iter().map(|(_, request)| request.clone()).collect(),
             history: self.history.clone(),
-            restart: self.snapshots.and_then(|snapshots| snapshots.in_step(dialect, self.procedure == Procedure::Explicit)),
+            restart: self
+                .snapshots
+                .and_then(|snapshots| snapshots.in_step(dialect, self.procedure == Procedure::Explicit)),
         }
     }
 
@@ -291,7 +293,8 @@ impl Builder<'_> {
                 frequency,
                 summary: true,
             };
-            let contact = ContactRequest { target, variables: Subject::Contacts.preselected(procedure), frequency, ..ALL_PAIRS };
+            let contact =
+                ContactRequest { target, variables: Subject::Contacts.preselected(procedure), frequency, ..ALL_PAIRS };
             requests.nodes.push((family, node));
             requests.elements.push((family, element));
             requests.contacts.push((family, contact));

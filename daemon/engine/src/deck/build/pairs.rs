@@ -4,6 +4,7 @@ use rustc_hash::FxHashSet;
 
 use crate::model::{ContactPair, NodeId, PairMembers, SurfaceId, SurfaceKind, SurfacePair};
 
+use super::super::card::Card;
 use super::super::data::Row;
 use super::super::lex::{key, real, unquoted};
 use super::super::report::At;
@@ -12,24 +13,32 @@ use super::layout::Layout;
 
 const PAIR: &str = "*CONTACT PAIR";
 /// Part of a face by which a secondary node may hang over the edge of the primary surface.
-const EXTENSION_ZONE: f64 = 0.1;
+pub const EXTENSION_ZONE: f64 = 0.1;
 /// Largest EXTENSION ZONE.
 const EXTENSION_ZONE_MAX: f64 = 0.2;
 
 impl Builder<'_> {
     pub(super) fn build_pairs(&mut self, layout: &Layout<'_>) {
-        for card in layout.model.iter().filter(|card| card.keyword.name == PAIR) {
-            let interaction = card.parameters.value("INTERACTION");
-            let interaction = interaction.and_then(|name| self.refer_interaction(name, card.at, PAIR));
-            if !card.parameters.has("SMALL SLIDING") {
-                let message = "finite sliding is solved as small sliding: a point keeps the place on the primary surface that it starts from";
-                self.report.warning(
-                    card.at,
-                    PAIR,
-                    message,
-                    "add SMALL SLIDING to say so; the run stops when a point slides beyond half a face",
-                );
+        for (step, card) in layout.with_explicit_steps().filter(|(_, card)| card.keyword.name == PAIR) {
+            if layout.is_explicit() {
+                self.explicit_pair_card(step, card);
+                continue;
             }
+            for name in ["MECHANICAL CONSTRAINT", "WEIGHT"].into_iter().filter(|name| card.parameters.has(name)) {
+                let message = format!("{name} belongs to pairs of explicit analyses");
+                self.report.error(card.at, PAIR, message, "remove it, or write *DYNAMIC, EXPLICIT in every step");
+            }
+            if card.parameters.has("OP") {
+                let remedy = "remove it; switch pairs on and off with *MODEL CHANGE, TYPE=CONTACT PAIR";
+                self.report.error(card.at, PAIR, "OP belongs to pairs of explicit analyses", remedy);
+            }
+            let interaction = card.parameters.value("INTERACTION");
+            if interaction.is_none() && !card.faulty {
+                let remedy = "write *CONTACT PAIR, INTERACTION=…";
+                self.report.error(card.at, PAIR, "parameter INTERACTION is missing", remedy);
+            }
+            let interaction = interaction.and_then(|name| self.refer_interaction(name, card.at, PAIR));
+            self.warn_of_sliding(card);
             if card.parameters.word("TYPE") == "SURFACETOSURFACE" {
                 let message = "surface-to-surface contact is solved node-to-surface: forces act at the secondary nodes, and where the meshes do not match a uniform pressure is not transmitted as one";
                 self.report.warning(
@@ -63,7 +72,7 @@ impl Builder<'_> {
                     );
                 }
                 let (Some(secondary), Some(primary)) = (secondary, primary) else { continue };
-                if self.pair_is_sound(&row, secondary, primary)
+                if self.pair_is_sound(&row, secondary, primary, 1.0)
                     && let (Some(interaction), Some(extension_zone), Ok(adjust), Ok(hcrit), false) =
                         (interaction, extension_zone, adjust, hcrit, card.faulty)
                 {
@@ -92,13 +101,24 @@ impl Builder<'_> {
         }
     }
 
-    fn pair_surface(&mut self, row: &Row<'_>, index: usize, role: &str) -> Option<SurfaceId> {
+    pub(super) fn warn_of_sliding(&mut self, card: &Card) {
+        if !card.parameters.has("SMALL SLIDING") {
+            let message = "finite sliding is solved as small sliding: a point keeps the place on the primary surface that it starts from";
+            let remedy = "add SMALL SLIDING to say so; the run stops when a point slides beyond half a face";
+            self.report.warning(card.at, PAIR, message, remedy);
+        }
+    }
+
+    pub(super) fn pair_surface(&mut self, row: &Row<'_>, index: usize, role: &str) -> Option<SurfaceId> {
         let name = unquoted(row.text(index));
         if name.is_empty() {
-            let remedy = if index == 1 {
-                "write: secondary surface, primary surface; contact of a surface with itself is not solved"
-            } else {
-                "write: secondary surface, primary surface"
+            let remedy = match (role, index) {
+                ("secondary", _) => "write: secondary surface, primary surface",
+                ("primary", _) => {
+                    "write: secondary surface, primary surface; contact of a surface with itself is not solved"
+                }
+                (_, 0) => "write: first surface, second surface",
+                _ => "write: first surface, second surface; contact of a surface with itself is not solved",
             };
             self.report.error(row.at, PAIR, format!("the {role} surface is missing"), remedy);
             return None;
@@ -106,7 +126,21 @@ impl Builder<'_> {
         self.surfaces.refer(name, row.at, PAIR, self.report).map(SurfaceId)
     }
 
-    fn pair_is_sound(&mut self, row: &Row<'_>, secondary: SurfaceId, primary: SurfaceId) -> bool {
+    /// Whether two surfaces can be a pair in which they have these parts for a share of the result, and the others for the rest.
+    pub(super) fn pair_is_sound(
+        &mut self,
+        row: &Row<'_>,
+        secondary: SurfaceId,
+        primary: SurfaceId,
+        weight: f64,
+    ) -> bool {
+        let fit = (weight == 0.0 || self.parts_fit(row, secondary, primary))
+            && (weight == 1.0 || self.parts_fit(row, primary, secondary));
+        fit && self.nodes_are_apart(row, secondary, primary)
+    }
+
+    /// Whether two surfaces can have these parts.
+    fn parts_fit(&mut self, row: &Row<'_>, secondary: SurfaceId, primary: SurfaceId) -> bool {
         let surfaces = &self.model.mesh.surfaces;
         let (first, second) = (&surfaces[secondary.index()], &surfaces[primary.index()]);
         if secondary == primary {
@@ -161,6 +195,13 @@ impl Builder<'_> {
             );
             return false;
         }
+        true
+    }
+
+    /// Whether two surfaces have no node in common.
+    fn nodes_are_apart(&mut self, row: &Row<'_>, secondary: SurfaceId, primary: SurfaceId) -> bool {
+        let surfaces = &self.model.mesh.surfaces;
+        let (first, second) = (&surfaces[secondary.index()], &surfaces[primary.index()]);
         let size = |kind: &SurfaceKind| match kind {
             SurfaceKind::Faces(faces) => faces.iter().map(|&face| self.model.mesh.face_nodes(face).len()).sum(),
             SurfaceKind::Nodes(nodes) => nodes.len(),
@@ -241,7 +282,7 @@ impl Builder<'_> {
         }
     }
 
-    fn pair_name(&self, secondary: SurfaceId, primary: SurfaceId) -> String {
+    pub(super) fn pair_name(&self, secondary: SurfaceId, primary: SurfaceId) -> String {
         let name = |surface: SurfaceId| &self.model.mesh.surfaces[surface.index()].name;
         format!("{}_{}", name(secondary), name(primary))
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use crate::model::{Boundary, Dialect, Model, NodeId};
+use crate::model::{Boundary, BoundaryKind, Dialect, Model, NodeId};
 
 use super::super::card::Card;
 use super::super::data::Row;
@@ -20,8 +20,10 @@ const BOUNDARY: &str = "*BOUNDARY";
 pub enum Part {
     /// Before the first step.
     Model,
-    /// In a step.
-    Step,
+    /// In a static step.
+    Static,
+    /// In a dynamic step.
+    Dynamic,
 }
 
 /// Named types and their degrees of freedom.
@@ -47,6 +49,18 @@ impl Builder<'_> {
         if card.faulty {
             return;
         }
+        let kind = match card.parameters.word("TYPE").as_str() {
+            "VELOCITY" => BoundaryKind::Velocity,
+            "ACCELERATION" => BoundaryKind::Acceleration,
+            _ => BoundaryKind::Displacement,
+        };
+        if part == Part::Static && kind != BoundaryKind::Displacement {
+            let message = format!("TYPE={} in a static step", card.parameters.word("TYPE"));
+            let remedy = "prescribe the displacements of the step, or write *DYNAMIC for *STATIC";
+            return self.report.error(card.at, BOUNDARY, message, remedy);
+        }
+        // What is held before the first step stays where it is: a velocity or acceleration of zero is a displacement of zero.
+        let kind = if part == Part::Model { BoundaryKind::Displacement } else { kind };
         let mut warned = false;
         for line in card.lines().iter() {
             let row = line.row(BOUNDARY);
@@ -78,13 +92,13 @@ impl Builder<'_> {
             if let (Some(first), true) = (ignored.clone().min(), looks_numeric(row.text(1).as_bytes())) {
                 let last = ignored.max().unwrap_or(first);
                 let message = format!(
-                    "degrees of freedom {first} to {last} are ignored: only reference nodes of rigid bodies have rotations"
+                    "degrees of freedom {first} to {last} are ignored: only reference nodes of rigid bodies and nodes of ROTARYI have rotations"
                 );
                 self.report.warning(row.at, BOUNDARY, message, "");
             }
             for (direction, nodes) in along.into_iter().filter(|(_, nodes)| !nodes.is_empty()) {
                 let boundary = Boundary {
-                    kind: Default::default(),
+                    kind,
                     region: region.region.clone(),
                     region_name: region.name.clone(),
                     nodes,
@@ -94,6 +108,34 @@ impl Builder<'_> {
                     place: self.map.place(row.at),
                 };
                 push(row.at, boundary);
+            }
+        }
+    }
+
+    /// Displacements that are reached at once: an infinite velocity. Those that an earlier step has reached stay.
+    pub(super) fn check_jumps(&mut self, boundaries: &[Boundary], lines: &[At], is_explicit: bool) {
+        for (boundary, &at) in boundaries.iter().zip(lines) {
+            let earlier = self.model.steps.iter().flat_map(|step| &step.boundaries).rev();
+            let mut earlier =
+                earlier.filter(|other| (&other.region, other.direction) == (&boundary.region, boundary.direction));
+            let is_jump = boundary.kind == BoundaryKind::Displacement
+                && boundary.amplitude.is_none()
+                && boundary.magnitude != 0.0
+                && earlier.next().is_none_or(|other| {
+                    other.kind != boundary.kind || other.magnitude != boundary.magnitude || other.amplitude.is_some()
+                });
+            if !is_jump {
+                continue;
+            }
+            let (name, magnitude) = (&boundary.region_name, boundary.magnitude);
+            let message = format!(
+                "{name} is displaced by {magnitude} at once: a dynamic step does not ramp values without an amplitude"
+            );
+            let remedy = "give AMPLITUDE with a curve from 0, prescribe TYPE=VELOCITY, or write *STEP, AMPLITUDE=RAMP";
+            if is_explicit {
+                self.report.error(at, BOUNDARY, message, remedy);
+            } else {
+                self.report.warning(at, BOUNDARY, message, remedy);
             }
         }
     }
@@ -211,7 +253,7 @@ impl Builder<'_> {
             let at = self.step_lines[step][later];
             let direction = mesh.dof_of(node, now.direction);
             let label = mesh.node_labels[node.index()];
-            let same = before.magnitude == now.magnitude && before.amplitude == now.amplitude;
+            let same = (before.magnitude, before.amplitude, before.kind) == (now.magnitude, now.amplitude, now.kind);
             if !same && before.magnitude != 0.0 && now.magnitude != 0.0 {
                 let message = format!(
                     "degree of freedom {direction} of node {label} is prescribed as {} and as {} in one step",

@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::model::{Dialect, ElementId, Material, MaterialId, NodeId, RigidBody, SurfaceKind};
+use crate::model::{Dialect, ElementId, ElementKind, Material, MaterialId, NodeId, RigidBody, SurfaceKind};
 
 use super::super::card::Card;
 use super::super::lex::{self, looks_numeric, unquoted};
@@ -102,9 +102,7 @@ impl Builder<'_> {
                 return None;
             }
         }
-        let rotations = &mut self.model.mesh.rotations;
-        let at = rotations.partition_point(|&(other, _)| other < reference);
-        rotations.insert(at, (reference, rotation));
+        self.add_rotation(reference, rotation);
         if let Some(name) = card.parameters.value("ANALYTICAL SURFACE") {
             self.rigid_surface(name, card)?;
         }
@@ -221,12 +219,53 @@ impl Builder<'_> {
             }
             return Some(node);
         }
+        Some(self.hidden_node(reference))
+    }
+
+    /// Hangs the ROTARYI elements on the hidden nodes that carry the rotations of their nodes: those of reference nodes, and new ones
+    /// for other nodes.
+    pub(super) fn place_rotary_inertia(&mut self) {
+        for element in 0..self.model.mesh.elements.len() {
+            if self.model.mesh.elements.kind(element) != ElementKind::RotaryI {
+                continue;
+            }
+            let node = self.model.mesh.elements.nodes(element)[0];
+            let hidden = match self.model.mesh.rotation_of(node) {
+                Some(hidden) => hidden,
+                None => {
+                    if self.model.rigid_bodies.iter().any(|body| body.nodes.binary_search(&node).is_ok()) {
+                        let mesh = &self.model.mesh;
+                        let (label, node) = (mesh.element_labels[element], mesh.node_labels[node.index()]);
+                        let message = format!(
+                            "element {label} (ROTARYI) hangs on node {node}, which follows the reference node of a rigid body"
+                        );
+                        let remedy = "give the inertia to the reference node";
+                        self.report.error(self.element_at[element], "*ELEMENT", message, remedy);
+                        continue;
+                    }
+                    let hidden = self.hidden_node(node);
+                    self.add_rotation(node, hidden);
+                    hidden
+                }
+            };
+            self.model.mesh.elements.replace_node(element, 0, hidden);
+        }
+    }
+
+    /// Adds a hidden node at the place of another one.
+    fn hidden_node(&mut self, node: NodeId) -> NodeId {
         let mesh = &mut self.model.mesh;
         let hidden = NodeId(mesh.nodes.len() as u32);
-        mesh.nodes.push(mesh.nodes[reference.index()]);
-        mesh.node_labels.push(mesh.node_labels[reference.index()]);
+        mesh.nodes.push(mesh.nodes[node.index()]);
+        mesh.node_labels.push(mesh.node_labels[node.index()]);
         mesh.hidden_nodes += 1;
-        Some(hidden)
+        hidden
+    }
+
+    fn add_rotation(&mut self, node: NodeId, rotation: NodeId) {
+        let rotations = &mut self.model.mesh.rotations;
+        let at = rotations.partition_point(|&(other, _)| other < node);
+        rotations.insert(at, (node, rotation));
     }
 
     /// Adds the equations of the rigid bodies behind those of the deck; again when nodes have moved.

@@ -1,4 +1,4 @@
-//! `*SOLID SECTION`, `*SPRING` and `*MASS`: what each element is made of.
+//! `*SOLID SECTION`, `*SPRING`, `*DASHPOT`, `*MASS` and `*ROTARY INERTIA`: what each element is made of.
 
 use crate::model::{Connector, ElementId, ElementKind, MaterialId, SetId, SolidSection};
 
@@ -10,7 +10,9 @@ use super::layout::Layout;
 
 const SOLID: &str = "*SOLID SECTION";
 const SPRING: &str = "*SPRING";
+const DASHPOT: &str = "*DASHPOT";
 const MASS: &str = "*MASS";
+const ROTARY_INERTIA: &str = "*ROTARY INERTIA";
 
 /// Cross-section area of a bar whose section gives none.
 const AREA: f64 = 1.0;
@@ -30,9 +32,9 @@ fn section_of(kind: ElementKind) -> (&'static str, &'static str) {
         }
         ElementKind::Mass => (MASS, "give their set a *MASS"),
         ElementKind::DashpotA | ElementKind::Dashpot1 | ElementKind::Dashpot2 => {
-            ("*DASHPOT", "give their set a *DASHPOT")
+            (DASHPOT, "give their set a *DASHPOT with a coefficient")
         }
-        ElementKind::RotaryI => ("*ROTARY INERTIA", "give their set a *ROTARY INERTIA"),
+        ElementKind::RotaryI => (ROTARY_INERTIA, "give their set a *ROTARY INERTIA"),
         kind if kind.is_gap() => ("*GAP", "give their set a *GAP"),
         kind if kind.is_facet() => ("*RIGID BODY", "name their set in a *RIGID BODY"),
         _ => (SOLID, "give their set a *SOLID SECTION with a material"),
@@ -48,7 +50,7 @@ impl Builder<'_> {
         for card in &layout.model {
             let done = match card.keyword.name {
                 SOLID => self.solid_section(card, &mut owner),
-                SPRING | MASS => self.connector_section(card, &mut owner),
+                SPRING | DASHPOT | MASS | ROTARY_INERTIA => self.connector_section(card, &mut owner),
                 _ => continue,
             };
             sound &= done.is_some();
@@ -134,7 +136,8 @@ impl Builder<'_> {
         }
         let connector = match kind {
             ElementKind::Mass => mass(card, self.report)?,
-            _ => spring(card, kind, self.report)?,
+            ElementKind::RotaryI => rotary_inertia(card, self.report)?,
+            _ => spring_or_dashpot(card, kind, self.report)?,
         };
         for element in elements {
             let assigned = Assigned { material: MaterialId::NONE, connector: Some(connector) };
@@ -159,6 +162,23 @@ impl Builder<'_> {
             format!("element {label} is of material {} already", self.materials.written(other.material.0))
         };
         self.report.error(at, keyword, message, "give each element one section");
+    }
+
+    /// Dashpots act in dynamic steps only.
+    pub(super) fn check_dashpots(&mut self, layout: &Layout<'_>) {
+        let is_static =
+            |step: &&super::layout::StepCards<'_>| step.cards.iter().any(|card| card.keyword.name == "*STATIC");
+        let Some(step) = layout.steps.iter().find(is_static) else { return };
+        for card in layout.model.iter().filter(|card| card.keyword.name == DASHPOT) {
+            if layout.has_dynamics() {
+                let message = "dashpots have no force in the static steps of the deck";
+                self.report.warning(card.at, DASHPOT, message, "let the static steps hold every body without them");
+            } else {
+                let message = "dashpots act in dynamic steps, and the deck has none";
+                let remedy = "remove them, or write *DYNAMIC for *STATIC";
+                self.report.error(card.at.min(step.opening.at), DASHPOT, message, remedy);
+            }
+        }
     }
 
     /// Elements without a section: one finding for each kind of section.
@@ -211,37 +231,82 @@ fn not_negative(row: &Row<'_>, what: &str, report: &mut Report) -> Option<f64> {
 }
 
 fn mass(card: &Card, report: &mut Report) -> Option<Connector> {
+    let alpha = damping_factor(card, report);
     let row = card.single_row("mass", report)?;
     row.at_most(1, report);
-    Some(Connector::Mass { mass: not_negative(&row, "mass", report)?, alpha: 0.0 })
+    Some(Connector::Mass { mass: not_negative(&row, "mass", report)?, alpha: alpha? })
 }
 
-/// A line of directions (none for SPRINGA, where it is blank), then the stiffness.
-fn spring(card: &Card, kind: ElementKind, report: &mut Report) -> Option<Connector> {
-    let rows: Vec<Row<'_>> = card.lines().iter().map(|line| line.row(SPRING)).collect();
+/// `ALPHA` of a section; `None` when it is wrong, which is reported.
+fn damping_factor(card: &Card, report: &mut Report) -> Option<f64> {
+    if card.parameters.has("ALPHA") { super::materials::not_negative(card, "ALPHA", report) } else { Some(0.0) }
+}
+
+/// I11, I22, I33, I12, I13, I23 on one line: a matrix without negative eigenvalues.
+fn rotary_inertia(card: &Card, report: &mut Report) -> Option<Connector> {
+    let alpha = damping_factor(card, report);
+    let row = card.single_row("I11, I22, I33, I12, I13, I23", report)?;
+    row.at_most(6, report);
+    let mut inertia = [0.0; 6];
+    for (value, (index, name)) in inertia.iter_mut().zip(["I11", "I22", "I33", "I12", "I13", "I23"].iter().enumerate())
+    {
+        *value = row.real(index, name, Some(0.0), report)?;
+    }
+    let [a, b, c, d, e, f] = inertia;
+    // Principal minors of the matrix, each up to rounding of its terms: all are positive or zero in a body of mass.
+    let scale = a.abs().max(b.abs()).max(c.abs());
+    let minors = [
+        a,
+        b,
+        c,
+        (a * b - d * d) / scale,
+        (a * c - e * e) / scale,
+        (b * c - f * f) / scale,
+        (a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)) / (scale * scale),
+    ];
+    if scale > 0.0 && minors.into_iter().all(|minor| minor >= -1e-12 * scale) {
+        return Some(Connector::RotaryInertia { inertia, alpha: alpha? });
+    }
+    let message = if scale == 0.0 {
+        "the moments of inertia are zero".to_string()
+    } else {
+        format!("no body has the moments of inertia {a}, {b}, {c} with the products {d}, {e}, {f}")
+    };
+    let remedy = "give I11, I22, I33, I12, I13, I23 of a body about the node";
+    report.error(row.at, ROTARY_INERTIA, message, remedy);
+    None
+}
+
+/// A line of directions (none for SPRINGA and DASHPOTA, where it is blank), then the stiffness or the coefficient.
+fn spring_or_dashpot(card: &Card, kind: ElementKind, report: &mut Report) -> Option<Connector> {
+    let keyword = card.keyword.name;
+    let is_spring = keyword == SPRING;
+    let rows: Vec<Row<'_>> = card.lines().iter().map(|line| line.row(keyword)).collect();
     let rows: Vec<&Row<'_>> = rows.iter().filter(|row| row.fields.iter().any(|field| !field.is_empty())).collect();
+    let what = if is_spring { "stiffness" } else { "damping coefficient" };
     let (nodes, layout) = match kind {
-        ElementKind::SpringA => (0, "write a blank line, then: stiffness"),
-        ElementKind::Spring1 => (1, "write two lines: direction; stiffness"),
-        _ => (2, "write two lines: direction at node 1, direction at node 2; stiffness"),
+        ElementKind::SpringA | ElementKind::DashpotA => (0, format!("write a blank line, then: {what}")),
+        ElementKind::Spring1 | ElementKind::Dashpot1 => (1, format!("write two lines: direction; {what}")),
+        _ => (2, format!("write two lines: direction at node 1, direction at node 2; {what}")),
     };
     let lines = 1 + usize::from(nodes > 0);
     if let Some(extra) = rows.get(lines) {
         let message = format!("{} takes {lines} lines of data; a further one is not read", kind.name());
-        let remedy = format!("{layout}; a stiffness that depends on temperature or elongation is not solved");
-        report.error(extra.at, SPRING, message, remedy);
+        let on = if is_spring { "elongation" } else { "velocity" };
+        let remedy = format!("{layout}; a {what} that depends on temperature or {on} is not solved");
+        report.error(extra.at, keyword, message, remedy);
         return None;
     }
     let Some(row) = rows.get(lines - 1) else {
-        report.error(card.at, SPRING, format!("a line of data of {} is missing", kind.name()), layout);
+        report.error(card.at, keyword, format!("a line of data of {} is missing", kind.name()), layout);
         return None;
     };
     if row.fields.iter().skip(1).any(|field| !field.is_empty()) {
-        let message = "frequency and temperature behind the stiffness are ignored: it is the same for all";
-        report.warning(row.at, SPRING, message, "");
+        let message = format!("frequency and temperature behind the {what} are ignored: it is the same for all");
+        report.warning(row.at, keyword, message, "");
         row.at_most(3, report);
     }
-    let stiffness = not_negative(row, "stiffness", report);
+    let value = not_negative(row, what, report);
     let mut directions = [0; 2];
     if nodes > 0 {
         rows[0].at_most(nodes, report);
@@ -249,7 +314,12 @@ fn spring(card: &Card, kind: ElementKind, report: &mut Report) -> Option<Connect
             *direction = spring_direction(rows[0], node, report)?;
         }
     }
-    Some(Connector::Spring { stiffness: stiffness?, directions })
+    let value = value?;
+    Some(if is_spring {
+        Connector::Spring { stiffness: value, directions }
+    } else {
+        Connector::Dashpot { coefficient: value, directions }
+    })
 }
 
 fn spring_direction(row: &Row<'_>, node: usize, report: &mut Report) -> Option<u8> {
