@@ -17,6 +17,7 @@ mod port_table;
 mod printed;
 mod printed_contact;
 mod printed_elements;
+mod printed_step;
 mod printed_table;
 mod report;
 mod results_file;
@@ -143,7 +144,7 @@ impl ResultWriter {
             return Ok(());
         };
         let plan = Plan::new(step, increment, moment);
-        if plan.is_empty() && increment.status_changes.is_empty() {
+        if plan.is_empty() {
             return self.snapshots.write(step, increment, moment, simulation);
         }
         let history = simulation.history();

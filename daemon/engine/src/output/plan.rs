@@ -27,6 +27,8 @@ pub(super) struct Plan<'a> {
     pub element_files: Vec<&'a ElementRequest>,
     /// Contact records of the results file.
     pub contact_files: Vec<&'a ContactRequest>,
+    /// Whether the contact log of the increment is printed for itself. In explicit steps it stands with the tables alone.
+    pub contact_log: bool,
     /// Whether the increment ends its step, or the run.
     pub end: bool,
 }
@@ -43,11 +45,10 @@ impl<'a> Plan<'a> {
             .chain(requests.elements.iter().map(|r| (r.target, r.frequency)))
             .chain(requests.contacts.iter().map(|r| (r.target, r.frequency)))
             .filter_map(of_fields);
-        let history = match step.procedure {
-            Procedure::Explicit(_) if !requests.history.is_empty() => {
-                moment == Moment::LastOfStep || span.any_due(requests.history.iter().copied(), moment)
-            }
-            _ => moment != Moment::Stopped,
+        let explicit = matches!(step.procedure, Procedure::Explicit(_));
+        let history = match explicit && !requests.history.is_empty() {
+            true => moment == Moment::LastOfStep || span.any_due(requests.history.iter().copied(), moment),
+            false => moment != Moment::Stopped,
         };
         let mut node_rows = Vec::new();
         for request in requests.nodes.iter().filter(|r| due(r.frequency) && r.totals != Totals::Only) {
@@ -71,17 +72,18 @@ impl<'a> Plan<'a> {
             node_files: nodes(OutputTarget::File),
             element_files: elements(OutputTarget::File),
             contact_files: contacts(OutputTarget::File),
+            contact_log: !explicit && !report.status_changes.is_empty(),
             end: moment != Moment::Within,
         }
     }
 
     /// Whether nothing is due.
     pub(super) fn is_empty(&self) -> bool {
-        let Self { history, contact_rows, frame, node_rows, end, .. } = self;
+        let Self { history, contact_rows, frame, node_rows, contact_log, end, .. } = self;
         let tables = [self.node_prints.len(), self.element_prints.len(), self.contact_prints.len()];
         let records = [self.node_files.len(), self.element_files.len(), self.contact_files.len()];
         let lists = tables.into_iter().chain(records).chain([node_rows.len()]).sum::<usize>();
-        !history && !contact_rows && !frame && !end && lists == 0
+        !history && !contact_rows && !frame && !contact_log && !end && lists == 0
     }
 
     /// Whether nodal values are needed.

@@ -8,10 +8,11 @@ use super::number::printed;
 use super::plan::Plan;
 use super::printed_contact::contact_tables;
 use super::printed_elements::element_tables;
+use super::printed_step::{step_heading, summary};
 use super::printed_table::{Entity, Table};
 use super::status_log::status_changes;
 use super::{Increment, NodalFields, step_of};
-use crate::model::{Model, NodeId, NodeRequest, Procedure, Step, Totals};
+use crate::model::{Model, NodeId, NodeRequest, Totals};
 use crate::simulation::{HistoryRow, IncrementReport, PreparedModel};
 
 /// Writes the summary of an increment and the tables that are due.
@@ -38,7 +39,7 @@ impl Printed {
         let Increment { prepared, report, history, resultants, contact, fields } = *said;
         let tables = !(plan.node_prints.is_empty() && plan.element_prints.is_empty() && plan.contact_prints.is_empty());
         let model = prepared.model();
-        let wanted = tables || plan.end || !report.status_changes.is_empty();
+        let wanted = tables || plan.end || plan.contact_log;
         let Some(step) = step_of(model, report).filter(|_| wanted) else {
             return Ok(());
         };
@@ -166,26 +167,6 @@ fn title(prepared: &PreparedModel) -> String {
         let _ = writeln!(text, "   {:<40}{count:>12}", format!("NUMBER OF {what} IS"));
     }
     text
-}
-
-fn step_heading(text: &mut String, step: &Step, increment: &IncrementReport) {
-    let procedure = match step.procedure {
-        Procedure::Static(_) => "STATIC ANALYSIS",
-        Procedure::Dynamic(_) => "DYNAMIC ANALYSIS",
-        Procedure::Explicit(_) => "EXPLICIT DYNAMIC ANALYSIS",
-    };
-    let spaced: String = procedure.chars().flat_map(|c| [c, ' ']).collect();
-    let _ = writeln!(text, "\n\n                    S T E P   {:>5}     {spaced}\n\n   {}", increment.step, step.name);
-}
-
-fn summary(text: &mut String, step: &Step, increment: &IncrementReport) {
-    let _ = writeln!(text, "\n\n                              INCREMENT {:>5} SUMMARY\n", increment.increment);
-    let pair = |text: &mut String, a: &str, x: f64, b: &str, y: f64| {
-        let _ = writeln!(text, " {a:<26}{},  {b:<28}{}", printed(x), printed(y));
-    };
-    let fraction = increment.step_time / step.procedure.period();
-    pair(text, "TIME INCREMENT COMPLETED", increment.increment_size, "FRACTION OF STEP COMPLETED", fraction);
-    pair(text, "STEP TIME COMPLETED", increment.step_time, "TOTAL TIME COMPLETED", increment.time);
 }
 
 /// Points whose status changed in the increment.
