@@ -16,6 +16,7 @@ mod audit;
 mod cache;
 mod condensation;
 mod examination;
+mod explicit;
 mod fields;
 mod fingerprint;
 mod implicit;

@@ -8,6 +8,7 @@ use crate::contact::points::ContactPoint;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::element::{Elasticity, connector};
 use crate::examination::{self, Examined};
+use crate::explicit::{self, ExplicitModel};
 use crate::fingerprint::fingerprint;
 use crate::implicit::ImplicitModel;
 use crate::model::{Connector, ElementId, Equation, Model};
@@ -51,6 +52,8 @@ pub struct PreparedModel {
     pub(crate) support_elements: Vec<u32>,
     /// What implicit dynamic steps need; none without one.
     pub(crate) implicit: Option<ImplicitModel>,
+    /// What explicit steps need; none without one.
+    pub(crate) explicit: Option<ExplicitModel>,
     /// What dynamic steps need; none without one.
     pub(crate) nodal: Option<Nodal>,
     /// Every column: those that carry loads, then those that only measure.
@@ -77,7 +80,7 @@ impl PreparedModel {
         announce: &mut dyn FnMut(Phase),
     ) -> Result<Self, Vec<Diagnostic>> {
         announce(Phase::Search);
-        let Examined { constraints, points, row_points, rows, bodies, motions, floating, loading, warnings } =
+        let Examined { constraints, points, row_points, rows, bodies, motions, floating, loading, mut warnings } =
             examination::examine(&model)?;
         let mut columns = loading.columns.clone();
         let real_columns = columns.len();
@@ -113,6 +116,25 @@ impl PreparedModel {
         let implicit = ImplicitModel::new(&context, &bodies, options.path, options.memory_limit);
         let nodal =
             model.has_dynamics().then(|| Nodal::new(&constraints, &row_points, points.len(), model.mesh.nodes.len()));
+        let explicit = match &nodal {
+            Some(nodal) if model.is_explicit() => {
+                let setting = explicit::Setting {
+                    model: &model,
+                    elasticities: &elasticities,
+                    constraints: &constraints,
+                    columns: &columns[..real_columns],
+                    nodal,
+                    points: &points,
+                    row_points: &row_points,
+                    tangential: rows.first_tangential(),
+                };
+                announce(Phase::Assemble);
+                let mut explicit = ExplicitModel::new(&setting, &budget)?;
+                warnings.append(&mut explicit.warnings);
+                Some(explicit)
+            }
+            _ => None,
+        };
         let all = PortList { inputs: loading.inputs.clone(), outputs: outputs.ports.clone() };
         let (ports, sources) = match &options.ports_toml {
             None => (all, outputs.sources.clone()),
@@ -153,6 +175,7 @@ impl PreparedModel {
             elasticities,
             statics,
             implicit,
+            explicit,
             nodal,
             support_elements,
             columns,
@@ -238,6 +261,11 @@ impl PreparedModel {
     pub(crate) fn factorizations(&self) -> u32 {
         let factored = |statics: &Statics| statics.bodies.iter().filter(|b| b.was_factored()).count() as u32;
         self.statics.as_ref().map_or(0, factored)
+    }
+
+    /// What explicit steps need.
+    pub(crate) fn explicit(&self) -> &ExplicitModel {
+        self.explicit.as_ref().expect("only explicit steps ask, and a deck that has one prepares for them")
     }
 
     /// What implicit dynamic steps need.

@@ -6,6 +6,7 @@ pub use crate::prepared::PreparedModel;
 pub use crate::request::*;
 pub use crate::results::*;
 
+use crate::explicit::ExplicitWork;
 use crate::fingerprint::fingerprint;
 use crate::model::Model;
 use crate::procedure::implicit::ImplicitWork;
@@ -42,6 +43,8 @@ pub struct Simulation {
     pub(crate) work: Work,
     /// Of implicit dynamic steps.
     pub(crate) implicit: ImplicitWork,
+    /// Of the present explicit step.
+    pub(crate) explicit: Option<ExplicitWork>,
     pub(crate) derived: Derived,
     /// Input of each real column, if it is one.
     input_of_column: Vec<Option<usize>>,
@@ -184,7 +187,8 @@ impl Simulation {
             Some(_) => ImplicitWork::new(prepared.model.mesh.nodes.len()),
             None => ImplicitWork::default(),
         };
-        let mut simulation = Self { prepared, state, solver, work, implicit, derived, input_of_column, step_starts };
+        let mut simulation =
+            Self { prepared, state, solver, work, implicit, explicit: None, derived, input_of_column, step_starts };
         simulation.begin_motion();
         simulation.recompute();
         simulation

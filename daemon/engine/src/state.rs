@@ -10,6 +10,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::explicit::energies::Ledger;
 use crate::simulation::{Energies, RestoreError, WorkCounts};
 use crate::solve::condensed::Response;
 
@@ -57,6 +58,10 @@ pub struct Motion {
     pub energy_max: f64,
     /// Energies at the end of the last increment; in an explicit step at its start.
     pub energies: Energies,
+    /// Of explicit steps: what the energies are made of.
+    pub ledger: Ledger,
+    /// Of explicit steps: size of the last increment, that of an earlier step too; 0 before the first \[time\].
+    pub size_before: f64,
 }
 
 /// Everything that an increment changes.

@@ -70,6 +70,8 @@ pub fn points(underlying: &Underlying<'_>, pair: u32, gaps: &[GapElement]) -> Ve
             pair,
             node: secondary,
             area: gap.area,
+            share: 1.0,
+            mirrored: false,
             normal,
             tangents: tangents(normal),
             primary: FaceNodes::single(primary),

@@ -2,17 +2,13 @@
 //!
 //! Small sliding: anchor, normal and tangents are those of the undeformed bodies. How anchors are found: `search.rs`.
 
-use super::primary::{Hold, Lever, Primary};
-use super::search::Query;
-use super::secondary::Secondaries;
+use super::primary::Lever;
+use super::side::Side;
 use super::underlying::Underlying;
-use super::{adjust, gap_points, secondary};
+use super::{gap_points, general};
 use crate::diagnostic::Diagnostic;
 use crate::element::quad::{cross, dot, norm};
 use crate::model::{FACE_NODES_MAX, FaceNodes, Model, NodeId, PairMembers};
-
-/// Overlap at the start, in face sizes, beyond which the analyst should look at the geometry (HCRIT: half a face).
-const OVERLAP_MAX: f64 = 0.5;
 
 /// Component of a unit vector or shape function that is rounding: left in, it would give a row of prescribed nodes a compliance.
 const ENTRY_ROUNDING: f64 = 1e-14;
@@ -24,8 +20,12 @@ pub struct ContactPoint {
     pub pair: u32,
     /// Secondary node.
     pub node: NodeId,
-    /// Tributary area [length²].
+    /// Tributary area [length²]: the share of it that the point has of the result.
     pub area: f64,
+    /// 1, or the weight that the points of this side have in a balanced pair.
+    pub share: f64,
+    /// Whether the secondary node is on the surface that the pair names second.
+    pub mirrored: bool,
     /// Unit normal of the primary at the anchor, towards the secondary side.
     pub normal: [f64; 3],
     /// Unit tangents: the projection of the 1-axis (of the 3-axis where that is normal), and normal x first tangent.
@@ -87,110 +87,24 @@ pub(super) fn tangents(normal: [f64; 3]) -> [[f64; 3]; 2] {
     [first, cross(normal, first)]
 }
 
-/// Contact points of all pairs, pair by pair, by node; and warnings about secondary nodes that found no partner or start deep
-/// inside one.
-///
-/// A node with one anchor carries its whole tributary area. A node in a corner carries against each anchor what its faces show in
-/// that direction: the component of its area vector.
+/// Contact points of all pairs, pair by pair, by node, the mirrored ones of balanced pairs behind the others; and warnings about
+/// secondary nodes that found no partner or start deep inside one.
 pub fn find(model: &Model) -> (Vec<ContactPoint>, Vec<Diagnostic>) {
-    let mesh = &model.mesh;
     let (mut points, mut warnings) = (Vec::new(), Vec::new());
     let underlying = Underlying::new(model);
     for (pair, index) in model.pairs.iter().zip(0u32..) {
-        let surfaces = match &pair.members {
-            PairMembers::Surfaces(surfaces) => surfaces,
-            // Its points are found by general contact itself.
-            PairMembers::General(_) => continue,
-            PairMembers::Gaps(gaps) => {
-                points.extend(gap_points::points(&underlying, index, gaps));
-                continue;
+        match &pair.members {
+            PairMembers::Gaps(gaps) => points.extend(gap_points::points(&underlying, index, gaps)),
+            PairMembers::General(members) => {
+                points.extend(general::points(&underlying, index, members, pair.explicit.weight.0));
             }
-        };
-        let kind = &mesh.surfaces[surfaces.primary.index()].kind;
-        let primary = Primary::new(mesh, kind, &mesh.analytical);
-        let stiffness = secondary::Stiffness::new(&underlying, surfaces.secondary);
-        let length = secondary::characteristic_length(model, surfaces);
-        let Secondaries { all: secondaries, mut unknown, bare } = secondary::of_pair(model, pair.interaction, surfaces);
-        let total = secondaries.len();
-        let (mut lost, mut deep) = (Vec::new(), Vec::new());
-        for (node, area, vector) in secondaries {
-            let label = mesh.node_labels[node.index()];
-            let outward = vector.map(direction);
-            let anchors = primary.anchors(mesh, Query { node, outward, extension_zone: surfaces.extension_zone });
-            if anchors.is_empty() {
-                lost.push(label);
-            }
-            let several = anchors.len() > 1;
-            let given = surfaces.clearances.binary_search_by_key(&node, |&(node, _)| node);
-            for (i, anchor) in anchors.into_iter().enumerate() {
-                // ADJUST has moved the node; what is left is rounding, or a primary surface that moved behind it.
-                let adjusted = surfaces.adjust.is_some_and(|a| adjust::applies(mesh, a.region, node, &anchor, i == 0));
-                let clearance = match given {
-                    Ok(at) => surfaces.clearances[at].1,
-                    Err(_) if adjusted => 0.0,
-                    Err(_) => anchor.clearance,
-                };
-                let face_size = primary.reach(&anchor, length);
-                let critical = if face_size.is_finite() { face_size } else { length };
-                if clearance < -surfaces.hcrit.unwrap_or(OVERLAP_MAX * critical) {
-                    deep.push(label);
+            PairMembers::Surfaces(surfaces) => {
+                let share = if model.is_explicit() { pair.explicit.weight.0 } else { 1.0 };
+                for side in Side::of_pair(model, index, surfaces, share) {
+                    side.find(&underlying, &mut points, &mut warnings);
                 }
-                let bare = bare.binary_search(&node).is_ok();
-                let under = if bare { primary.area_at(&anchor) } else { None };
-                if bare && under.is_none() && unknown.last() != Some(&label) {
-                    unknown.push(label);
-                }
-                let area = under.unwrap_or(area);
-                let shown = vector.filter(|_| several).map(|v| dot(v, anchor.normal).abs());
-                let area = shown.unwrap_or(area);
-                let Hold { nodes, weights, lever } = primary.hold(mesh, &model.rigid_bodies, &anchor);
-                points.push(ContactPoint {
-                    pair: index,
-                    node,
-                    area,
-                    normal: anchor.normal,
-                    tangents: tangents(anchor.normal),
-                    primary: nodes,
-                    weights,
-                    lever,
-                    clearance,
-                    face_size,
-                    length,
-                    underlying: stiffness.with(node, anchor.normal, area, primary.stiffness(&underlying, &anchor)),
-                });
             }
         }
-        let mut warn = |labels: &[u32], what: &str, remedy: &str| {
-            if !labels.is_empty() {
-                let shown: Vec<String> = labels.iter().take(8).map(u32::to_string).collect();
-                let more = if labels.len() > 8 { ", …" } else { "" };
-                let message = format!(
-                    "pair {}: {} of {total} secondary nodes {what}: {}{more}",
-                    pair.name,
-                    labels.len(),
-                    shown.join(", ")
-                );
-                warnings.push(Diagnostic::warning(pair.place.clone(), "*CONTACT PAIR", message, remedy));
-            }
-        };
-        warn(
-            &unknown,
-            "have midside nodes on their outer faces, or are on no solid and meet an analytical surface: CalculiX takes the area of a node from faces without, and these stand for 1",
-            "give the area on the data line of *SURFACE INTERACTION",
-        );
-        warn(
-            &lost,
-            "have no face of the primary surface opposite them and take no part in contact",
-            "extend the primary surface if these nodes should be in contact",
-        );
-        warn(
-            &deep,
-            match surfaces.hcrit {
-                Some(_) => "start more than HCRIT inside the primary surface",
-                None => "start more than half a face inside the primary surface",
-            },
-            "check the geometry and the sides of the surfaces: contact will push these nodes out",
-        );
     }
     (points, warnings)
 }

@@ -61,7 +61,7 @@ impl Simulation {
         let interval = self.begin_interval(target, tolerance);
         let outcome = match procedure.implicit_increments() {
             Some(control) => self.advance_interval(&interval, control, watch),
-            None => AdvanceOutcome::Stopped { reason: "explicit steps are not solved yet".into() },
+            None => self.advance_explicit(&interval, watch),
         };
         // The list is used again: an increment allocates nothing.
         self.work.driven = interval.driven;
@@ -169,7 +169,7 @@ impl Simulation {
     }
 
     /// The target is reached: pending values have become actual ones.
-    fn finish_interval(&mut self, interval: &Interval) {
+    pub(crate) fn finish_interval(&mut self, interval: &Interval) {
         if interval.driven.is_empty() {
             return;
         }
@@ -245,7 +245,7 @@ impl Simulation {
     }
 
     /// Starts to count increments of a size from the present time.
-    fn set_increment(&mut self, size: f64) {
+    pub(crate) fn set_increment(&mut self, size: f64) {
         self.state.increment_next = size;
         self.state.increment_anchor = self.state.step_time;
         self.state.increment_index = 0;

@@ -3,6 +3,7 @@
 mod accept;
 pub mod courses;
 pub mod enforcement;
+mod explicit;
 mod failure;
 mod impact;
 pub mod implicit;

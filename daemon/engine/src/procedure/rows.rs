@@ -128,6 +128,12 @@ impl RowPlan {
         })
     }
 
+    /// First tangential row of each point that has some, ascending.
+    pub fn first_tangential(&self) -> Vec<(u32, u32)> {
+        let rows = self.tangential.iter().zip(self.pairs.len() as u32..);
+        rows.filter(|(t, _)| t.direction == 0).map(|(t, row)| (t.point, row)).collect()
+    }
+
     /// Number of contact points.
     pub fn points(&self) -> usize {
         self.pairs.len()
