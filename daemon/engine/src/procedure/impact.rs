@@ -12,7 +12,7 @@
 //! as an offset. Source: Abaqus Theory Manual 2.4.2; offset and guards are our rules.
 
 use crate::model::Enforcement;
-use crate::nodal::load;
+use crate::nodal::{largest, load};
 use crate::procedure::enforcement::IncrementCounts;
 use crate::procedure::failure::Failure;
 use crate::procedure::implicit::words;
@@ -166,7 +166,11 @@ impl Simulation {
             (0..nodal.rows()).map(|row| nodal.along(row, &motion.velocity)).collect()
         };
         self.work.free.clone_from(&before);
-        let impulses = self.hold(counts)?;
+        let (model, form) = (prepared.implicit(), self.dynamic_control().mass);
+        let motion = self.state.motion.as_ref().expect("as above");
+        model.mass(form).multiply(&motion.velocity, &mut self.implicit.change);
+        let momentum = largest(&self.implicit.change);
+        let impulses = self.hold(momentum, counts)?;
         let motion = self.state.motion.as_mut().expect("as above");
         for (v, change) in motion.velocity.iter_mut().zip(&self.implicit.change) {
             (0..3).for_each(|d| v[d] += change[d]);
@@ -185,6 +189,7 @@ impl Simulation {
         self.state_rows();
         self.balance_motion();
         let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
+        let force_max = motion.force_max;
         // Prescribed accelerations stay, the others follow.
         let own = &mut self.implicit;
         own.acceleration.fill([0.0; 3]);
@@ -200,7 +205,7 @@ impl Simulation {
         let free = &mut self.work.free;
         free.clear();
         free.extend((0..nodal.rows()).map(|row| nodal.along(row, &own.acceleration)));
-        let forces = self.hold(counts)?;
+        let forces = self.hold(force_max, counts)?;
         let motion = self.state.motion.as_mut().expect("as above");
         for (i, (change, known)) in self.implicit.change.iter().zip(&self.implicit.acceleration).enumerate() {
             let mass = model.mass(form).diagonal(crate::model::NodeId(i as u32));
@@ -221,8 +226,8 @@ impl Simulation {
     }
 
     /// Holds the closed hard points against the rates in `work.free` under the nodal forces in `implicit.force`, with the mass as the only
-    /// resistance. A point that would have to pull opens. What moves is in `implicit.change`, dependents included.
-    fn hold(&mut self, counts: &mut IncrementCounts) -> Result<Vec<f64>, Failure> {
+    /// resistance. A point that would have to pull opens; `scale` is what rounding is judged against. What moves is in `implicit.change`, dependents included.
+    fn hold(&mut self, scale: f64, counts: &mut IncrementCounts) -> Result<Vec<f64>, Failure> {
         let prepared = self.prepared.clone();
         let (nodal, form) = (prepared.nodal(), self.dynamic_control().mass);
         let mut operators = std::mem::take(&mut self.implicit.operators);
@@ -231,7 +236,7 @@ impl Simulation {
             Ok((operator, fresh)) => {
                 counts.solves.factorizations += u32::from(fresh);
                 operator.begin(&self.implicit.force, &mut self.work.free);
-                self.hold_with(operator)
+                self.hold_with(operator, scale)
             }
         };
         self.implicit.operators = operators;
@@ -240,7 +245,7 @@ impl Simulation {
         Ok(forces)
     }
 
-    fn hold_with(&mut self, operator: &mut crate::implicit::Operator) -> Result<Vec<f64>, Failure> {
+    fn hold_with(&mut self, operator: &mut crate::implicit::Operator, scale: f64) -> Result<Vec<f64>, Failure> {
         let prepared = self.prepared.clone();
         let (points, n) = (prepared.points.len(), prepared.rows.count());
         let moment = Self::moment(&prepared, self.state.step as usize, self.state.step_time);
@@ -272,7 +277,7 @@ impl Simulation {
                 springs: &mut [],
             };
             operator.solver.solve(&operator.system, problem, &mut unknowns).map_err(Failure::Solve)?;
-            let largest = forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+            let largest = forces.iter().fold(scale, |m, f| m.max(f.abs()));
             let pulls = |&i: &usize| {
                 rows[i].wall == Wall::TwoSided && !self.state.latched[i] && forces[i] < -FORCE_ROUNDING * largest
             };

@@ -10,7 +10,7 @@ use crate::nodal::{load, place};
 use crate::procedure::enforcement::{Coupling, IncrementCounts};
 use crate::procedure::failure::Failure;
 use crate::procedure::interference;
-use crate::procedure::interval::{Event, Found, Interval, rounded};
+use crate::procedure::interval::{Event, Found, Interval};
 use crate::simulation::Simulation;
 
 /// Events at one time before an increment is given up.
@@ -92,7 +92,7 @@ impl Simulation {
                 self.count_located(|_| 0);
                 break;
             };
-            let located = rounded(found.fraction * size);
+            let located = found.fraction * size;
             let so_far = self.state.motion.as_ref().map_or(0, |motion| motion.located);
             // Before the first moment that can be told from the start nothing has moved.
             let moves = located > interval.tolerance && begun + located > begun && so_far < LOCATED_MAX;

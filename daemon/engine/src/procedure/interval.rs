@@ -290,7 +290,7 @@ impl Simulation {
 }
 
 /// A length of time with 40 of its 52 binary digits.
-pub(crate) fn rounded(size: f64) -> f64 {
+fn rounded(size: f64) -> f64 {
     f64::from_bits((size.to_bits() + HALF_KEPT) & !(2 * HALF_KEPT - 1))
 }
 
