@@ -23,7 +23,7 @@ impl Simulation {
         let mut findings = Vec::new();
         match &self.state.motion {
             None => self.audit_balance(&mut findings),
-            Some(motion) => audit_energy(motion, &mut findings),
+            Some(motion) => audit_energy(motion, self.prepared.extent, &mut findings),
         }
         self.audit_points(&mut findings);
         findings
@@ -66,7 +66,9 @@ impl Simulation {
         // Of coordinates, and of motions that go a long way.
         let motion = self.state.motions.iter().fold(0.0f64, |m, a| m.max(a.abs()));
         let rounding = PLACE_ROUNDING * prepared.extent.max(motion);
-        let force_scale = self.state.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
+        let at_work = |motion: &Motion| motion.force_scale(motion.increment_last);
+        let force_scale = self.state.motion.as_ref().map_or(0.0, at_work);
+        let force_scale = self.state.forces.iter().fold(force_scale, |m, f| m.max(f.abs()));
         let (mut tension, mut overlap, mut deep) = (Vec::new(), Vec::new(), Vec::new());
         for (i, point) in prepared.points.iter().enumerate() {
             let (force, overclosure) = (self.state.forces[i], self.derived.overclosures[i]);
@@ -106,9 +108,11 @@ impl Simulation {
 }
 
 /// ETOTAL stays what it was.
-fn audit_energy(motion: &Motion, findings: &mut Vec<String>) {
+fn audit_energy(motion: &Motion, extent: f64, findings: &mut Vec<String>) {
     let drift = motion.energies.total - motion.energy_start;
-    if drift.abs() > ENERGY_DRIFT_MAX * motion.energy_max {
+    // Forces along the last digits of places.
+    let rounding = PLACE_ROUNDING * extent * motion.force_scale(motion.increment_last);
+    if drift.abs() > ENERGY_DRIFT_MAX * motion.energy_max + rounding {
         findings.push(format!(
             "energy balance: ETOTAL has changed by {drift:e}, the largest energy is {:e}: increments are too large for this motion",
             motion.energy_max

@@ -9,8 +9,9 @@ pub use crate::results::*;
 use crate::explicit::ExplicitWork;
 use crate::fingerprint::fingerprint;
 use crate::model::Model;
+use crate::procedure::courses::{ColumnMotion, Course};
 use crate::procedure::implicit::ImplicitWork;
-use crate::procedure::loading::Course;
+use crate::procedure::interval::Driven;
 use crate::procedure::modified_hard::Verdict;
 use crate::solve::contact::{ContactSolver, Row};
 use crate::state::{Shape, State};
@@ -56,8 +57,10 @@ pub struct Simulation {
 #[derive(Default)]
 pub(crate) struct Work {
     pub coefficients: Vec<f64>,
-    /// Column, value at the start, value at the end of each driven input.
-    pub driven: Vec<(usize, f64, f64)>,
+    /// Columns of driven inputs.
+    pub driven: Vec<Driven>,
+    /// Columns with their rates.
+    pub columns: Vec<ColumnMotion>,
     pub free: Vec<f64>,
     pub forces: Vec<f64>,
     pub closed: Vec<bool>,
@@ -171,6 +174,7 @@ impl Simulation {
             relief: vec![0.0; n],
             tangential: vec![0.0; 2 * n],
             scratch: vec![0.0; 2 * n],
+            columns: Vec::new(),
             starts: vec![0.0; n],
             rows: Vec::with_capacity(n),
             multipliers: vec![0.0; points],
@@ -253,7 +257,8 @@ impl Simulation {
     /// Present actual value of an input (a pending one if it was set since the last advance).
     pub fn input(&self, input: usize) -> Option<f64> {
         let column = *self.prepared.loading.input_columns.get(input)?;
-        Some(self.state.pending[input].unwrap_or(self.state.coefficients[column]))
+        let now = self.column_now(column).of(self.kind_of(column));
+        Some(self.state.pending[input].unwrap_or(now))
     }
 
     /// Advances to a total time, through `initialize` if needed. Increments follow the deck's control and end

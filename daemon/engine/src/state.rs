@@ -46,10 +46,14 @@ pub struct Motion {
     pub rates: Vec<f64>,
     /// See `rates`.
     pub rates_start: Vec<f64>,
+    /// Second rate of each real column [unit/time²].
+    pub curvatures: Vec<f64>,
     /// Size of the last increment \[time\]; 0 before the first.
     pub increment_last: f64,
     /// Events in a row that ended their increments.
     pub located: u32,
+    /// Largest momentum of a node so far \[force·time\].
+    pub momentum_max: f64,
     /// Largest force so far \[force\]: what half-increment residuals are compared with.
     pub force_max: f64,
     /// ETOTAL at the start of the step, and the largest energy since \[energy\].
@@ -62,6 +66,13 @@ pub struct Motion {
     pub ledger: Ledger,
     /// Of explicit steps: size of the last increment, that of an earlier step too; 0 before the first \[time\].
     pub size_before: f64,
+}
+
+impl Motion {
+    /// Force against which rounding is judged: the largest so far, or what would stop the largest momentum within an increment \[force\].
+    pub fn force_scale(&self, increment: f64) -> f64 {
+        self.force_max.max(self.momentum_max / increment)
+    }
 }
 
 /// Everything that an increment changes.
@@ -213,7 +224,7 @@ impl State {
             vectors.iter().all(|v| v.len() == nodes)
                 && (m.unbalance.is_empty() || m.unbalance.len() == nodes)
                 && m.offsets.len() == state.forces.len()
-                && [&m.rates, &m.rates_start].iter().all(|v| v.len() == state.coefficients.len())
+                && [&m.rates, &m.rates_start, &m.curvatures].iter().all(|v| v.len() == state.coefficients.len())
         };
         let dynamic = shape.dynamic.get(step).copied();
         if Some(state.motion.is_some()) != dynamic || !state.motion.as_ref().is_none_or(moves) {
@@ -281,6 +292,7 @@ mod tests {
             offsets: vec![0.0; 3],
             rates: vec![0.0; 2],
             rates_start: vec![0.0; 2],
+            curvatures: vec![0.0; 2],
             ..Motion::default()
         };
         let moving = State { motion: Some(motion), ..state() };

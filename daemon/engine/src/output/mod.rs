@@ -31,7 +31,10 @@ mod vtu;
 mod tests;
 
 pub use file::OutputError;
-pub use report::{CutbackSummary, Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StableIncrement, StepSummary, write_report};
+pub use report::{
+    CutbackSummary, Finding, ModelSize, RestartOrigin, RunOutcome, RunReport, StableIncrement, StepSummary,
+    write_report,
+};
 pub use snapshots::SnapshotSummary;
 pub use status_log::{StatusChangeSummary, status_changes};
 

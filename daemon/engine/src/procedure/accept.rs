@@ -78,6 +78,10 @@ impl Simulation {
         std::mem::swap(&mut state.tangential, &mut work.tangential);
         std::mem::swap(&mut state.multipliers, &mut work.multipliers);
         std::mem::swap(&mut state.coefficients, &mut work.coefficients);
+        motion.rates.clear();
+        motion.rates.extend(work.columns.iter().map(|column| column.rate));
+        motion.curvatures.clear();
+        motion.curvatures.extend(work.columns.iter().map(|column| column.acceleration));
         state.step_time = end;
         self.balance_motion();
         let (motion, own) = (self.state.motion.as_mut().expect("as above"), &self.implicit);
@@ -140,6 +144,7 @@ impl Simulation {
         motion.energies.strain = 0.5 * dot(&own.change, &motion.displacement);
         model.mass(form).multiply(&motion.velocity, &mut own.change);
         motion.energies.kinetic = 0.5 * dot(&own.change, &motion.velocity);
+        motion.momentum_max = motion.momentum_max.max(largest(&own.change));
         let behaviors = &prepared.model.interactions;
         motion.energies.contact = (self.work.rows.iter().zip(&self.work.overclosures).zip(&state.closed))
             .filter(|(_, closed)| **closed)

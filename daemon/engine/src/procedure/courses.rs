@@ -1,4 +1,4 @@
-//! What the coefficient of a column does during a step: its value at any at, and for prescribed directions its rates.
+//! What the coefficient of a column does during a step: its value at any time, and for prescribed directions its rates.
 
 use rustc_hash::FxHashMap;
 
@@ -49,7 +49,7 @@ impl Course {
     }
 }
 
-/// A at of a step.
+/// A time of a step, with what a course needs to know of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTime {
     /// Total time at the start of the step.
@@ -61,7 +61,7 @@ pub struct StepTime {
 }
 
 impl StepTime {
-    /// A at of a step of a model, by its position.
+    /// A time of a step of a model, by its position.
     pub fn of(model: &Model, step: usize, step_start: f64, step_time: f64) -> Self {
         Self { step_start, step_time, period: model.steps[step].procedure.period() }
     }
@@ -90,7 +90,58 @@ pub struct ColumnMotion {
     pub acceleration: f64,
 }
 
-/// Value of a column at a at of a step. Of a prescribed velocity or acceleration this is not the displacement:
+impl ColumnMotion {
+    /// What a line of a kind prescribes.
+    pub fn of(&self, kind: BoundaryKind) -> f64 {
+        match kind {
+            BoundaryKind::Displacement => self.value,
+            BoundaryKind::Velocity => self.rate,
+            BoundaryKind::Acceleration => self.acceleration,
+        }
+    }
+}
+
+/// Motion of a direction whose displacement, velocity or acceleration, as its kind says, goes linearly to a value within a length of
+/// time: what an input does that is driven from outside. `start` is the motion at the start of that time, `elapsed` what has passed of it.
+pub fn driven(kind: BoundaryKind, start: ColumnMotion, to: f64, elapsed: f64, length: f64) -> ColumnMotion {
+    let begin = match kind {
+        BoundaryKind::Displacement => start.value,
+        BoundaryKind::Velocity => start.rate,
+        BoundaryKind::Acceleration => start.acceleration,
+    };
+    let value = if elapsed >= length { to } else { begin + (to - begin) * (elapsed / length) };
+    let slope = if length > 0.0 { (to - begin) / length } else { 0.0 };
+    let (first, second) = line(begin, slope, elapsed);
+    of_kind(kind, start, value, slope, elapsed, first, second)
+}
+
+/// Integral and double integral of what begins with a value and grows with a slope.
+fn line(from: f64, slope: f64, time: f64) -> (f64, f64) {
+    (time * (from + 0.5 * slope * time), time * time * (0.5 * from + slope * time / 6.0))
+}
+
+/// Motion from what is prescribed, its slope and its integrals since the start.
+fn of_kind(
+    kind: BoundaryKind,
+    start: ColumnMotion,
+    value: f64,
+    slope: f64,
+    time: f64,
+    first: f64,
+    second: f64,
+) -> ColumnMotion {
+    match kind {
+        BoundaryKind::Displacement => ColumnMotion { value, rate: slope, acceleration: 0.0 },
+        BoundaryKind::Velocity => ColumnMotion { value: start.value + first, rate: value, acceleration: slope },
+        BoundaryKind::Acceleration => ColumnMotion {
+            value: start.value + start.rate * time + second,
+            rate: start.rate + first,
+            acceleration: value,
+        },
+    }
+}
+
+/// Value of a column at a time of a step. Of a prescribed velocity or acceleration this is not the displacement:
 /// [`Integrals::motion_at`] is.
 pub fn value_at(model: &Model, course: Course, step: usize, start_value: f64, step_start: f64, step_time: f64) -> f64 {
     shape(model, course, start_value, &StepTime::of(model, step, step_start, step_time))
@@ -139,7 +190,7 @@ impl Integrals {
         self.curves.entry((amplitude, start.to_bits())).or_insert_with(|| knots(curve, start));
     }
 
-    /// Displacement, velocity and acceleration of a prescribed direction at a at of a step, from displacement and velocity at
+    /// Displacement, velocity and acceleration of a prescribed direction at a time of a step, from displacement and velocity at
     /// its start (`start`; its acceleration is not looked at). Amplitudes of velocities and accelerations have been prepared.
     ///
     /// ```text
@@ -161,15 +212,16 @@ impl Integrals {
             BoundaryKind::Acceleration => 0.0,
         };
         let value = shape(model, course, begin, at);
-        // Slope of the shape, its integral and the integral of that, all since the start of the step.
-        let line = |from: f64, to: f64| {
+        let between = |from: f64, to: f64| {
             let slope = (to - from) / period;
-            (slope, time * (from + 0.5 * slope * time), time * time * (0.5 * from + slope * time / 6.0))
+            let (first, second) = line(from, slope, time);
+            (slope, first, second)
         };
+        // Slope of the shape, its integral and the integral of that, all since the start of the step.
         let (slope, first, second) = match course {
-            Course::Hold | Course::Step { .. } => line(value, value),
-            Course::Ramp { magnitude } => line(begin, magnitude),
-            Course::Line { from, magnitude } => line(from, magnitude),
+            Course::Hold | Course::Step { .. } => between(value, value),
+            Course::Ramp { magnitude } => between(begin, magnitude),
+            Course::Line { from, magnitude } => between(from, magnitude),
             Course::Curve { magnitude, amplitude } => {
                 let curve = &model.amplitudes[amplitude.index()];
                 let clock = at.clock(curve);
@@ -181,15 +233,7 @@ impl Integrals {
                 (magnitude * slope(curve, clock, is_start), magnitude * first, magnitude * second)
             }
         };
-        match kind {
-            BoundaryKind::Displacement => ColumnMotion { value, rate: slope, acceleration: 0.0 },
-            BoundaryKind::Velocity => ColumnMotion { value: start.value + first, rate: value, acceleration: slope },
-            BoundaryKind::Acceleration => ColumnMotion {
-                value: start.value + start.rate * time + second,
-                rate: start.rate + first,
-                acceleration: value,
-            },
-        }
+        of_kind(kind, start, value, slope, time, first, second)
     }
 
     fn integrals(&self, amplitude: AmplitudeId, start: f64, clock: f64, curve: &Amplitude) -> (f64, f64) {
@@ -310,6 +354,29 @@ mod tests {
         assert!((later.value - held.value - 0.5).abs() < 1e-15);
         // Beyond its end the step stands still.
         assert_eq!(at(curve, BoundaryKind::Velocity, AmplitudeClock::Step, 9.0), later);
+    }
+
+    /// Halves of an interval lead where the whole does, and there the value is the one that was asked for.
+    #[test]
+    fn driven_directions_go_on_from_where_they_are() {
+        let start = ColumnMotion { value: 3.0, rate: -2.0, acceleration: 0.5 };
+        for kind in [BoundaryKind::Displacement, BoundaryKind::Velocity, BoundaryKind::Acceleration] {
+            let whole = driven(kind, start, 1.5, 0.8, 0.8);
+            let middle = driven(kind, start, 1.5, 0.4, 0.8);
+            let halves = driven(kind, middle, 1.5, 0.4, 0.4);
+            for (a, b) in
+                [(whole.value, halves.value), (whole.rate, halves.rate), (whole.acceleration, halves.acceleration)]
+            {
+                assert!((a - b).abs() < 1e-14, "{kind:?}: {whole:?}, {halves:?}");
+            }
+            let asked = match kind {
+                BoundaryKind::Displacement => whole.value,
+                BoundaryKind::Velocity => whole.rate,
+                BoundaryKind::Acceleration => whole.acceleration,
+            };
+            assert_eq!(asked, 1.5);
+            assert_eq!(driven(kind, start, 1.5, 0.0, 0.8).value, start.value);
+        }
     }
 
     #[test]

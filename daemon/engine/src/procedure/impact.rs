@@ -49,7 +49,7 @@ impl Simulation {
         let weight = 1.0 + self.dynamic_control().alpha;
         let slack = OVERCLOSURE_ROUNDING * work.scale + PLACE_ROUNDING * prepared.extent;
         let forces = work.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-        let scale = state.motion.as_ref().map_or(0.0, |motion| motion.force_max).max(forces);
+        let scale = state.motion.as_ref().map_or(0.0, |motion| motion.force_scale(state.increment_next)).max(forces);
         let mut event = Upcoming { fraction: 0.0, closing: Vec::new(), opening: Vec::new() };
         for i in (0..prepared.points.len()).filter(|&i| is_hard(&moment, i)) {
             let closed = work.rows[i].wall == Wall::TwoSided;
@@ -188,8 +188,9 @@ impl Simulation {
         load(&prepared.loading.columns, &self.state.coefficients, &mut self.implicit.loads[1]);
         self.state_rows();
         self.balance_motion();
+        let increment = self.state.increment_next;
         let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
-        let force_max = motion.force_max;
+        let scale = motion.force_scale(increment);
         // Prescribed accelerations stay, the others follow.
         let own = &mut self.implicit;
         own.acceleration.fill([0.0; 3]);
@@ -205,7 +206,7 @@ impl Simulation {
         let free = &mut self.work.free;
         free.clear();
         free.extend((0..nodal.rows()).map(|row| nodal.along(row, &own.acceleration)));
-        let forces = self.hold(force_max, counts)?;
+        let forces = self.hold(scale, counts)?;
         let motion = self.state.motion.as_mut().expect("as above");
         for (i, (change, known)) in self.implicit.change.iter().zip(&self.implicit.acceleration).enumerate() {
             let mass = model.mass(form).diagonal(crate::model::NodeId(i as u32));

@@ -5,7 +5,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::implicit::{Hht, Operator, Operators};
-use crate::model::{DynamicControl, Procedure};
+use crate::model::{BoundaryKind, DynamicControl, Procedure};
 use crate::nodal::{load, place};
 use crate::procedure::enforcement::{Coupling, IncrementCounts};
 use crate::procedure::failure::Failure;
@@ -122,10 +122,12 @@ impl Simulation {
         let (nodal, model) = (prepared.nodal(), prepared.implicit());
         let control = self.dynamic_control();
         let hht = Hht::new(control.alpha, size);
-        let weight = 1.0 + control.alpha;
-        let mut coefficients = std::mem::take(&mut self.work.coefficients);
-        self.coefficients_at(end, interval, &mut coefficients);
-        self.work.coefficients = coefficients;
+        let (weight, step) = (1.0 + control.alpha, self.state.step as usize);
+        let mut now = std::mem::take(&mut self.work.columns);
+        self.columns_at(end, interval, &mut now);
+        self.work.coefficients.clear();
+        self.work.coefficients.extend(now.iter().map(|column| column.value));
+        self.work.columns = now;
         let motion = self.state.motion.as_ref().expect("a dynamic step has a motion");
         let work = &mut self.implicit;
         // Trial motion: free directions without acceleration, prescribed ones where they will be.
@@ -150,6 +152,15 @@ impl Simulation {
             work.velocity.as_flattened_mut()[i] = v;
             work.acceleration.as_flattened_mut()[i] = a;
         }
+        // Where velocities or accelerations are prescribed they are known.
+        for ((column, now), &kind) in columns.iter().zip(&self.work.columns).zip(&prepared.loading.kinds[step]) {
+            if kind != BoundaryKind::Displacement {
+                for &(node, d, share) in column.entries() {
+                    work.velocity[node.index()][usize::from(d)] = share * now.rate;
+                    work.acceleration[node.index()][usize::from(d)] = share * now.acceleration;
+                }
+            }
+        }
         for vector in [&mut work.displacement, &mut work.velocity, &mut work.acceleration] {
             nodal.extend(vector);
         }
@@ -171,7 +182,6 @@ impl Simulation {
         free.clear();
         let of_row = |row: usize| nodal.initial[row] - motion.offsets[row] + nodal.along(row, &work.displacement);
         free.extend((0..nodal.rows()).map(of_row));
-        let step = self.state.step as usize;
         let begun = self.step_starts[step];
         interference::allow(&prepared.model, &prepared.rows, &nodal.initial, step, begun, end, free);
         let mut operators = std::mem::take(&mut work.operators);

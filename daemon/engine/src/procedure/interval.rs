@@ -1,9 +1,9 @@
 //! From one time to another in increments: fixed or automatic, cut back when no solution is found.
 
-use crate::model::StaticControl;
+use crate::model::{BoundaryKind, StaticControl};
+use crate::procedure::courses::{self, ColumnMotion, StepTime};
 use crate::procedure::enforcement::IncrementCounts;
 use crate::procedure::failure::Failure;
-use crate::procedure::loading::value_at;
 use crate::simulation::{AdvanceOutcome, CutbackReport, IncrementReport, Simulation, StatusChange, Watch};
 
 /// Automatic static increments: growth after two easy increments in a row (as in Abaqus). How many iterations they took says
@@ -47,8 +47,18 @@ pub(crate) struct Interval {
     pub end: f64,
     /// Times this close to the end are the end.
     pub tolerance: f64,
-    /// Column, value at the start, value at the end.
-    pub driven: Vec<(usize, f64, f64)>,
+    /// Columns of inputs that are driven from outside.
+    pub driven: Vec<Driven>,
+}
+
+/// A column that an input drives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Driven {
+    pub column: usize,
+    /// Its motion at the start of the interval.
+    pub start: ColumnMotion,
+    /// What its line prescribes at the end: a load, displacement, velocity or acceleration.
+    pub to: f64,
 }
 
 impl Simulation {
@@ -161,8 +171,9 @@ impl Simulation {
         driven.clear();
         for (input, &column) in self.prepared.loading.input_columns.iter().enumerate() {
             if self.on_last_step() && (self.state.driven[input] || self.state.pending[input].is_some()) {
-                let now = self.state.coefficients[column];
-                driven.push((column, now, self.state.pending[input].unwrap_or(now)));
+                let start = self.column_now(column);
+                let now = start.of(self.kind_of(column));
+                driven.push(Driven { column, start, to: self.state.pending[input].unwrap_or(now) });
             }
         }
         Interval { start: self.state.step_time, end: target, tolerance, driven }
@@ -182,26 +193,49 @@ impl Simulation {
 
     /// Coefficients of the real columns at a step time.
     pub(crate) fn coefficients_at(&self, time: f64, interval: &Interval, out: &mut Vec<f64>) {
-        let prepared = &self.prepared;
-        let step = self.state.step as usize;
         out.clear();
-        for column in 0..prepared.real_columns {
-            let course = self.course(column);
-            out.push(value_at(
-                &prepared.model,
-                course,
-                step,
-                self.state.step_start[column],
-                self.step_start_time(),
-                time,
-            ));
+        out.extend((0..self.prepared.real_columns).map(|column| self.column_at(column, time).value));
+        for driven in &interval.driven {
+            out[driven.column] = self.driven_at(driven, time, interval).value;
         }
-        for &(column, from, to) in &interval.driven {
-            out[column] = if time >= interval.end - interval.tolerance {
-                to
-            } else {
-                from + (to - from) * ((time - interval.start) / (interval.end - interval.start))
-            };
+    }
+
+    /// Coefficients of the real columns with their rates at a step time.
+    pub(crate) fn columns_at(&self, time: f64, interval: &Interval, out: &mut Vec<ColumnMotion>) {
+        out.clear();
+        out.extend((0..self.prepared.real_columns).map(|column| self.column_at(column, time)));
+        for driven in &interval.driven {
+            out[driven.column] = self.driven_at(driven, time, interval);
+        }
+    }
+
+    /// What the deck has of a column at a step time.
+    fn column_at(&self, column: usize, time: f64) -> ColumnMotion {
+        let (prepared, step) = (&self.prepared, self.state.step as usize);
+        let rate = self.state.motion.as_ref().map_or(0.0, |motion| motion.rates_start[column]);
+        let start = ColumnMotion { value: self.state.step_start[column], rate, acceleration: 0.0 };
+        let at = StepTime::of(&prepared.model, step, self.step_start_time(), time);
+        prepared.loading.motion(&prepared.model, step, column, self.course(column), start, &at)
+    }
+
+    fn driven_at(&self, driven: &Driven, time: f64, interval: &Interval) -> ColumnMotion {
+        let length = interval.end - interval.start;
+        let elapsed = if time >= interval.end - interval.tolerance { length } else { time - interval.start };
+        courses::driven(self.kind_of(driven.column), driven.start, driven.to, elapsed, length)
+    }
+
+    /// What a column's line prescribes in the present step.
+    pub(crate) fn kind_of(&self, column: usize) -> BoundaryKind {
+        self.prepared.loading.kinds[self.state.step as usize][column]
+    }
+
+    /// A column as it stands.
+    pub(crate) fn column_now(&self, column: usize) -> ColumnMotion {
+        let motion = self.state.motion.as_ref();
+        ColumnMotion {
+            value: self.state.coefficients[column],
+            rate: motion.map_or(0.0, |motion| motion.rates[column]),
+            acceleration: motion.map_or(0.0, |motion| motion.curvatures[column]),
         }
     }
 

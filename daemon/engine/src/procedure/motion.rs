@@ -1,5 +1,6 @@
 //! How a dynamic step begins: displacements of what went before, velocities, and energies to compare with.
 
+use crate::model::BoundaryKind;
 use crate::simulation::Simulation;
 use crate::state::Motion;
 
@@ -26,14 +27,21 @@ impl Simulation {
                     }
                 }
                 prepared.nodal().extend(&mut velocity);
+                // A direction whose velocity or acceleration is prescribed begins with its initial velocity.
+                let kinds = &prepared.loading.kinds[step];
+                let begins = |(&rate, &kind): (&f64, &BoundaryKind)| {
+                    if kind == BoundaryKind::Displacement { 0.0 } else { rate }
+                };
+                let rates = prepared.loading.rates_initial.iter().zip(kinds).map(begins).collect();
                 Motion {
                     displacement,
                     velocity,
                     acceleration: vec![[0.0; 3]; nodes],
                     reaction: vec![[0.0; 3]; nodes],
                     offsets: vec![0.0; prepared.rows.count()],
-                    rates: vec![0.0; prepared.real_columns],
+                    rates,
                     rates_start: vec![0.0; prepared.real_columns],
+                    curvatures: vec![0.0; prepared.real_columns],
                     ..Motion::default()
                 }
             }
