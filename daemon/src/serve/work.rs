@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
+use overclosure::model::Procedure;
 use overclosure::simulation::{AdvanceOutcome, IncrementReport, Simulation, Watch, WorkCounts};
 use overclosure_protocol::codec::{self, Format};
 use overclosure_protocol::fault::{Fault, FaultCode};
@@ -20,6 +22,9 @@ use super::frames::FrameSender;
 use super::models::SharedModel;
 use super::registry::{Status, shutting_down};
 use super::sequence::{Ledger, Outcome};
+
+/// Explicit steps have very many increments: those within this time of a published one are passed over, but for the last of a request.
+const EXPLICIT_FRAME_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Things that a session shares with the rest of the daemon.
 pub struct Surroundings {
@@ -62,6 +67,7 @@ impl Work {
         let mut work = Self { model, simulation, ledger, around, frames_sent: 0, streams };
         let (simulation, mut watch) = work.watched(0, &[]);
         let outcome = simulation.initialize(&mut watch);
+        watch.finish(simulation);
         match outcome {
             AdvanceOutcome::Reached => Ok(work),
             AdvanceOutcome::Cancelled if work.around.status.cancelled.load(Ordering::Relaxed) => Err(shutting_down()),
@@ -127,6 +133,7 @@ impl Work {
         let before = total(&self.simulation);
         let (simulation, mut watch) = self.watched(request.sequence, &request.frames);
         let outcome = simulation.advance(request.time, &mut watch);
+        watch.finish(simulation);
         let increments = watch.increments;
         let outcome = outcome.map_err(|e| convert::advance_error(&e))?;
         self.around.increments.fetch_add(increments.into(), Ordering::Relaxed);
@@ -279,6 +286,8 @@ impl Work {
             fields,
             frames_sent: &mut self.frames_sent,
             increments: 0,
+            published: None,
+            passed_over: None,
             increments_max: self.around.limits.increments_per_request,
             cancelled: &self.around.status.cancelled,
         };
@@ -293,21 +302,37 @@ struct FrameWatch<'a> {
     fields: &'a [String],
     frames_sent: &'a mut u64,
     increments: u32,
+    /// When the last frames were published, and the increment since that was not.
+    published: Option<Instant>,
+    passed_over: Option<At>,
     increments_max: u32,
     cancelled: &'a AtomicBool,
 }
 
-impl Watch for FrameWatch<'_> {
-    fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
-        self.increments += 1;
-        *self.frames_sent += 1;
+/// An increment of the deck.
+#[derive(Clone, Copy)]
+struct At {
+    step: u32,
+    increment: u32,
+    time: f64,
+}
+
+impl FrameWatch<'_> {
+    /// Publishes the last increment of the request, unless that is done.
+    fn finish(&mut self, simulation: &Simulation) {
+        if let Some(at) = self.passed_over.take() {
+            self.publish(simulation, at);
+        }
+    }
+
+    fn publish(&mut self, simulation: &Simulation, at: At) {
         let send = |field: &str, components: usize, labels: Vec<u32>, values: Vec<f64>| {
             let frame = Frame {
                 number: *self.frames_sent,
                 sequence: self.sequence,
-                step: report.step,
-                increment: report.increment,
-                time: report.time,
+                step: at.step,
+                increment: at.increment,
+                time: at.time,
                 field: field.to_owned(),
                 components: u32::try_from(components).unwrap_or(u32::MAX),
                 labels,
@@ -323,6 +348,25 @@ impl Watch for FrameWatch<'_> {
                 send(name, field.components, field.labels, field.values);
             }
         }
+    }
+}
+
+impl Watch for FrameWatch<'_> {
+    fn increment(&mut self, simulation: &Simulation, report: &IncrementReport) {
+        self.increments += 1;
+        *self.frames_sent += 1;
+        let at = At { step: report.step, increment: report.increment, time: report.time };
+        let step = &simulation.prepared().model().steps[report.step as usize - 1];
+        if matches!(step.procedure, Procedure::Explicit(_)) {
+            let now = Instant::now();
+            if self.published.is_some_and(|then| now - then < EXPLICIT_FRAME_INTERVAL) {
+                self.passed_over = Some(at);
+                return;
+            }
+            self.published = Some(now);
+        }
+        self.passed_over = None;
+        self.publish(simulation, at);
     }
 
     fn cancelled(&self) -> bool {

@@ -188,7 +188,8 @@ message! {
 message! {
     /// Published per increment under `frame/outputs` and `frame/{field}`, always in postcard.
     pub struct Frame/1 {
-        /// Counts the increments of the session from 1; a gap means frames that were dropped.
+        /// Counts the increments of the session from 1; a gap means frames that were dropped, or increments of an explicit step that were
+        /// passed over: no more than some twenty in a second are published, and the last of each request.
         pub number: u64,
         /// Sequence number of the step request that it belongs to.
         pub sequence: u64,
