@@ -324,7 +324,7 @@ impl Simulation {
 }
 
 /// A length of time with 40 of its 52 binary digits.
-fn rounded(size: f64) -> f64 {
+pub(crate) fn rounded(size: f64) -> f64 {
     f64::from_bits((size.to_bits() + HALF_KEPT) & !(2 * HALF_KEPT - 1))
 }
 
