@@ -1,12 +1,16 @@
 //! What a model holds, in a few lines for people.
 
+mod dynamics;
+
 use std::fmt::Write;
 
 use crate::law::{NormalBehavior, PressureOverclosure, Separation};
 use crate::model::{
-    AllowedOverclosure, ContactControls, ContactPair, Enforcement, ExplicitIncrements, Friction, Model, PairMembers,
-    PenetrationTolerance, Procedure, StepContact, SurfaceId, SurfaceInteraction, SurfaceKind,
+    AllowedOverclosure, ContactControls, ContactPair, Enforcement, ExplicitIncrements, Friction, MechanicalConstraint,
+    Model, PairMembers, PenetrationTolerance, Procedure, StepContact, SurfaceId, SurfaceInteraction, SurfaceKind,
 };
+
+use dynamics::{describe_damping, describe_dynamics};
 
 /// Counts of nodes, elements, sets, contact pairs with their faces and nodes, and steps. Ends with a newline.
 pub fn summary(model: &Model) -> String {
@@ -34,6 +38,12 @@ pub fn summary(model: &Model) -> String {
     if model.pairs.is_empty() {
         line("contact pairs", "none".into());
     }
+    if !model.initial_velocities.is_empty() {
+        line("velocities", format!("{} directions have one at the start", model.initial_velocities.len()));
+    }
+    for material in model.materials.iter().filter(|material| material.damping != Default::default()) {
+        line("damping", describe_damping(material));
+    }
     for step in &model.steps {
         let fixed = match &step.procedure {
             Procedure::Static(control) => control.direct,
@@ -56,6 +66,10 @@ pub fn summary(model: &Model) -> String {
                 step.loads.len()
             ),
         );
+        let facts = describe_dynamics(&step.procedure);
+        if !facts.is_empty() {
+            line("", facts.join("; "));
+        }
         for (index, pair) in model.pairs.iter().enumerate() {
             let changes = describe_changes(model, &step.contact, index, pair);
             if !changes.is_empty() {
@@ -102,6 +116,16 @@ fn describe_pair(model: &Model, pair: &ContactPair) -> String {
         describe_surface(model, surfaces.primary)
     );
     // Writing into a string cannot fail.
+    if model.is_explicit() {
+        let enforced = match pair.explicit.constraint {
+            MechanicalConstraint::Kinematic => "kinematic",
+            MechanicalConstraint::Penalty => "by penalty",
+        };
+        let _ = match pair.explicit.weight.0 {
+            1.0 => write!(text, ", {enforced}, pure"),
+            weight => write!(text, ", {enforced}, balanced by {weight}"),
+        };
+    }
     if let Some(adjust) = surfaces.adjust {
         let _ = write!(text, "; ADJUST moved {} nodes by up to {:.4e}", adjust.moved, adjust.distance_max);
     }
