@@ -348,9 +348,10 @@ impl Simulation {
         self.state.increment_index = 0;
         self.state.easy_increments = 0;
         self.state.counts.push(WorkCounts::default());
+        let moved = self.state.motion.is_some();
         self.begin_motion();
         self.remove_pairs();
-        if self.state.motion.is_none() {
+        if self.state.motion.is_none() && !moved {
             self.begin_overclosures();
         }
         self.recompute();

@@ -99,7 +99,7 @@ impl Simulation {
         self.derived.overclosures.clone_from(&self.work.overclosures);
     }
 
-    /// Forces out of balance without inertia and multipliers, and reactions: of the state, with the loads at its time in `loads[1]`.
+    /// Forces out of balance without inertia and multipliers, strain energy, and reactions: of the state, with the loads at its time in `loads[1]`.
     pub(crate) fn balance_motion(&mut self) {
         let prepared = self.prepared.clone();
         let (nodal, model, form) = (prepared.nodal(), prepared.implicit(), self.dynamic_control().mass);
@@ -107,8 +107,10 @@ impl Simulation {
         let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
         let force = &mut own.force;
         force.clear();
-        force.extend(own.loads[1].iter().map(|load| load.map(|f| -f)));
-        model.stiffness.multiply_add(1.0, &motion.displacement, force);
+        model.stiffness.multiply(&motion.displacement, &mut own.change);
+        motion.energies.strain = 0.5 * dot(&own.change, &motion.displacement);
+        let internal = own.change.iter().zip(&own.loads[1]);
+        force.extend(internal.map(|(k, load)| std::array::from_fn::<f64, 3, _>(|d| k[d] - load[d])));
         if let Some(damping) = model.damping(form) {
             damping.multiply_add(1.0, &motion.velocity, force);
         }
@@ -134,14 +136,12 @@ impl Simulation {
         motion.force_max = motion.force_max.max(largest(&own.loads[1])).max(inertia).max(contact);
     }
 
-    /// Strain, kinetic and contact energies of the state, and their total with what was dissipated and supplied.
+    /// Kinetic and contact energies of the state, and the total with what is strained, was dissipated and supplied.
     pub(crate) fn measure_energies(&mut self) {
         let prepared = self.prepared.clone();
         let (model, form) = (prepared.implicit(), self.dynamic_control().mass);
         let (own, state) = (&mut self.implicit, &mut self.state);
         let motion = state.motion.as_mut().expect("a dynamic step has a motion");
-        model.stiffness.multiply(&motion.displacement, &mut own.change);
-        motion.energies.strain = 0.5 * dot(&own.change, &motion.displacement);
         model.mass(form).multiply(&motion.velocity, &mut own.change);
         motion.energies.kinetic = 0.5 * dot(&own.change, &motion.velocity);
         motion.momentum_max = motion.momentum_max.max(largest(&own.change));
@@ -172,12 +172,14 @@ impl Simulation {
         Ok(residual < EASY * tolerance)
     }
 
-    /// Largest force at work so far, that of the trial included.
+    /// Largest force at work so far, that of the trial included; what would stop the largest momentum within the step where that is more:
+    /// before the first contact no force has been at work.
     fn force_scale(&self) -> f64 {
         let own = &self.implicit;
         let motion = self.state.motion.as_ref().expect("a dynamic step has a motion");
         let contact = self.work.forces.iter().fold(0.0f64, |m, f| m.max(f.abs()));
-        motion.force_max.max(largest(&own.loads[1])).max(contact)
+        let stopping = motion.momentum_max / self.dynamic_control().period;
+        motion.force_max.max(largest(&own.loads[1])).max(contact).max(stopping)
     }
 
     /// Largest force out of balance in the middle of the trial, accelerations going linearly from start to end: what a free direction

@@ -1,7 +1,7 @@
 //! How a dynamic step begins: displacements of what went before, velocities, and energies to compare with.
 
 use crate::model::BoundaryKind;
-use crate::simulation::Simulation;
+use crate::simulation::{Energies, Simulation};
 use crate::state::Motion;
 
 impl Simulation {
@@ -12,7 +12,7 @@ impl Simulation {
         let model = &prepared.model;
         let step = self.state.step as usize;
         if !model.steps[step].procedure.is_dynamic() {
-            self.state.motion = None;
+            self.end_motion();
             return;
         }
         let nodes = model.mesh.nodes.len();
@@ -33,7 +33,13 @@ impl Simulation {
                     if kind == BoundaryKind::Displacement { 0.0 } else { rate }
                 };
                 let rates = prepared.loading.rates_initial.iter().zip(kinds).map(begins).collect();
+                let energies = Energies {
+                    external_work: self.state.external_work,
+                    viscous: self.state.damping_work,
+                    ..Energies::default()
+                };
                 Motion {
+                    energies,
                     displacement,
                     velocity,
                     acceleration: vec![[0.0; 3]; nodes],
@@ -50,5 +56,14 @@ impl Simulation {
         // Not begun yet.
         motion.increment_last = 0.0;
         self.state.motion = Some(motion);
+    }
+
+    /// A static step behind a dynamic one begins at rest where that has ended.
+    fn end_motion(&mut self) {
+        let Some(energies) = self.state.motion.as_ref().map(|motion| motion.energies) else { return };
+        self.state.conjugates = (0..self.prepared.real_columns).map(|column| self.generalised(Some(column))).collect();
+        (self.state.external_work, self.state.damping_work) = (energies.external_work, energies.viscous);
+        self.state.penetrations.clone_from_slice(&self.derived.overclosures[..self.prepared.points.len()]);
+        self.state.motion = None;
     }
 }
