@@ -4,6 +4,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod benchmark;
 pub mod deck;
 pub mod diagnostic;
 pub mod law;

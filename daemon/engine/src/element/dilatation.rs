@@ -39,19 +39,6 @@ pub fn of(kind: ElementKind, coordinates: &[[f64; 3]]) -> Dilatation {
     Dilatation { gradient, volume }
 }
 
-impl Dilatation {
-    /// `ε̇_vol` [1/time] of nodal velocities.
-    pub fn rate(&self, velocity: &[[f64; 3]]) -> f64 {
-        self.gradient.iter().zip(velocity).map(|(g, v)| g[0] * v[0] + g[1] * v[1] + g[2] * v[2]).sum()
-    }
-
-    /// Largest ratio of `ε̇_vol²` to `Σ m_a v_a²` [1/(mass·length²)]: a force `F = f V ε̇_vol g_a` damps no motion at more than
-    /// `f V` times it.
-    pub fn participation(&self, masses: &[f64]) -> f64 {
-        self.gradient.iter().zip(masses).map(|(g, m)| (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]) / m).sum()
-    }
-}
-
 /// `L` \[length\].
 pub fn characteristic_length(kind: ElementKind, coordinates: &[[f64; 3]]) -> f64 {
     let Dilatation { gradient, volume } = of(kind, coordinates);

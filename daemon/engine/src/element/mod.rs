@@ -7,7 +7,6 @@ pub mod connector;
 pub mod connector_mass;
 #[cfg(test)]
 mod convergence_tests;
-#[allow(dead_code)] // Until dynamic steps use all of it.
 pub mod dilatation;
 #[cfg(test)]
 mod dilatation_tests;
@@ -21,7 +20,6 @@ pub mod mass;
 mod mass_tests;
 mod matrix;
 pub mod quad;
-#[allow(dead_code)] // Until dynamic steps use all of it.
 pub mod stable;
 #[cfg(test)]
 mod stable_tests;

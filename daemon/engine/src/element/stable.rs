@@ -6,7 +6,7 @@
 //! ```
 //!
 //! (`≤` between matrices). So each node `a` may be looked at by itself: `Λ_a = Σ_e ω_e² m_ea / m_a` over its elements, plus the
-//! `ω²` of every spring at it on the assembled masses, bounds the frequencies from above, and damping likewise. The `ω_e²` are largest
+//! `ω²` of every spring at it, on the masses that its ends move, bounds the frequencies from above, and damping likewise. The `ω_e²` are largest
 //! eigenvalues on lumped masses, found by reduction to three diagonals and bisection: the upper end of the last bracket counts.
 //! Source: Fried (1972), Bounds on the extremal eigenvalues of the finite element stiffness and mass matrices; for damping taken from
 //! the velocity before: Belytschko, Liu, Moran (2000), Nonlinear finite elements, 6.2.
@@ -44,12 +44,6 @@ pub fn frequency_squared(matrix: &Stiffness, masses: &[f64]) -> f64 {
         }
     }
     largest_eigenvalue(&mut scaled[..n * n], n)
-}
-
-/// `ω²` [1/time²] of a spring `k b bᵀ` with a mass at each end: `k Σ b² / m`, exact. `ends` are the squares of the vectors `b` with
-/// the masses that they move.
-pub fn spring_frequency_squared(stiffness: f64, ends: impl Iterator<Item = (f64, f64)>) -> f64 {
-    stiffness * ends.filter(|end| end.0 != 0.0).map(|(square, mass)| square / mass).sum::<f64>()
 }
 
 /// Largest stable increment \[time\] for `K ≤ ω² M` and `C ≤ rate M`: `2/ω (√(1 + ξ²) − ξ)` with `rate = 2 ξ ω`. Infinite where both

@@ -155,27 +155,42 @@ impl BlockMatrix {
     }
 
     /// `y += factor K x`.
+    ///
+    /// Numbers 1 and 2 of each row of a block go in pairs, which every processor multiplies at once; number 3 goes alone.
     pub fn multiply_add(&self, factor: f64, x: &[[f64; 3]], y: &mut [[f64; 3]]) {
         assert!(x.len() == self.len() && y.len() == self.len(), "nodal vectors are over all nodes of the mesh");
         let mut start = 0;
         for (i, &end) in self.starts[1..].iter().enumerate() {
             let (diagonal, later) = (&self.blocks[start], &self.blocks[start + 1..end]);
             let own = x[i].map(|value| factor * value);
-            let mut sum = [0.0; 3];
-            for (s, row) in sum.iter_mut().zip(diagonal.as_chunks::<3>().0) {
-                *s = row[0] * x[i][0] + row[1] * x[i][1] + row[2] * x[i][2];
+            let (mut pairs, mut thirds) = ([[0.0; 2]; 3], [0.0; 3]);
+            for d in 0..3 {
+                add_product(&mut pairs[d], [diagonal[3 * d], diagonal[3 * d + 1]], [x[i][0], x[i][1]]);
+                thirds[d] += diagonal[3 * d + 2] * x[i][2];
             }
             for (a, &j) in later.iter().zip(&self.columns[start + 1..end]) {
                 let (other, out) = (&x[j as usize], &mut y[j as usize]);
+                let (mut pair, mut third) = ([out[0], out[1]], out[2]);
                 for d in 0..3 {
-                    sum[d] += a[3 * d] * other[0] + a[3 * d + 1] * other[1] + a[3 * d + 2] * other[2];
-                    out[d] += a[d] * own[0] + a[3 + d] * own[1] + a[6 + d] * own[2];
+                    let row = [a[3 * d], a[3 * d + 1]];
+                    add_product(&mut pairs[d], row, [other[0], other[1]]);
+                    add_product(&mut pair, row, [own[d], own[d]]);
+                    thirds[d] += a[3 * d + 2] * other[2];
+                    third += a[3 * d + 2] * own[d];
                 }
+                *out = [pair[0], pair[1], third];
             }
-            for (out, s) in y[i].iter_mut().zip(sum) {
-                *out += factor * s;
+            for (out, (pair, third)) in y[i].iter_mut().zip(pairs.iter().zip(thirds)) {
+                *out += factor * (pair[0] + pair[1] + third);
             }
             start = end;
         }
     }
+}
+
+/// `sum += a b`, number by number.
+#[inline(always)]
+fn add_product(sum: &mut [f64; 2], a: [f64; 2], b: [f64; 2]) {
+    sum[0] += a[0] * b[0];
+    sum[1] += a[1] * b[1];
 }

@@ -1,7 +1,6 @@
 //! Linear algebra and the contact solve: bodies are factored once and condensed onto their contact points.
 
 pub mod assembly;
-#[allow(dead_code)] // Until dynamic steps use all of it.
 pub mod block_matrix;
 #[cfg(test)]
 mod block_matrix_tests;
@@ -14,7 +13,6 @@ pub mod constraints;
 pub mod contact;
 pub mod context;
 pub mod floating;
-#[allow(dead_code)] // Until dynamic steps use all of it.
 pub mod inertia;
 #[cfg(test)]
 mod inertia_tests;
