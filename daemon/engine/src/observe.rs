@@ -90,7 +90,9 @@ impl Simulation {
         derived.pairs.resize(prepared.model.pairs.len(), PairTotals::default());
         for (i, point) in prepared.points.iter().enumerate() {
             let pair = &mut derived.pairs[point.pair as usize];
-            let force = point.normal.map(|n| state.forces[i] * n);
+            // On the surface that the pair names first: what acts on the node, or what it acts with.
+            let side = if point.mirrored { -1.0 } else { 1.0 };
+            let force = point.normal.map(|n| side * state.forces[i] * n);
             let moment = cross(prepared.model.mesh.nodes[point.node.index()], force);
             for d in 0..3 {
                 pair.force[d] += force[d];
@@ -106,7 +108,8 @@ impl Simulation {
             derived.points[i].shear[d] = state.forces[k] / point.area;
             derived.points[i].viscous_shear[d] = state.viscous[k] / point.area;
             // The force of the row opposes the slip of the secondary node.
-            let force = point.tangents[d].map(|t| -state.forces[k] * t);
+            let side = if point.mirrored { -1.0 } else { 1.0 };
+            let force = point.tangents[d].map(|t| -side * state.forces[k] * t);
             let moment = cross(prepared.model.mesh.nodes[point.node.index()], force);
             let pair = &mut derived.pairs[point.pair as usize];
             for d in 0..3 {

@@ -59,7 +59,8 @@ impl Ledger {
         self.stored_start = self.lost - taken + stored;
     }
 
-    /// Energies at the start of an increment; `before` and `size` are the sizes of the increment before (0 for none) and of this one.
+    /// Energies at the start of an increment; `before` and `size` are the sizes of the increment before and of this one. What the first
+    /// increment meets acts from the middle of one of its size before it, where its velocities belong.
     pub fn book(&mut self, stand: Stand, power: &Power, before: f64, size: f64) -> Energies {
         let book = |sum: &mut f64, power: [f64; 2]| {
             let now = *sum + 0.5 * before * power[0];

@@ -115,8 +115,8 @@ pub fn correct(
     work: &mut HardWork,
     out: &mut Correction,
 ) {
-    // Each pass takes out at least one point.
-    while !active.is_empty() {
+    // Each pass takes out at least one point; the last one may have none left.
+    loop {
         solve(slots, inertia, active, tau, work);
         let HardWork { forces, .. } = work;
         let mut pulls = false;

@@ -13,7 +13,7 @@ use crate::simulation::Energies;
 use crate::solve::columns::Column;
 
 /// Halvings in the search for an increment whose end is still stable.
-const HALVINGS: usize = 8;
+const HALVINGS: usize = 16;
 
 /// What an increment reads and changes of the state. Rows are contact points followed by tangential rows.
 pub struct Memory<'a> {
@@ -73,6 +73,8 @@ pub struct ExplicitWork {
 pub struct Found {
     /// Energies at its start.
     pub energies: Energies,
+    /// Largest momentum of a direction [mass·length/time].
+    pub momentum: f64,
 }
 
 impl ExplicitWork {
@@ -128,9 +130,9 @@ impl ExplicitModel {
         &self.steps[work.step]
     }
 
-    /// Stable increment of the present step without contact \[time\]; of a step that nothing limits what it uses in its place.
+    /// Stable increment of a step without contact \[time\]; infinite where nothing limits it.
     pub fn free_increment(&self, step: usize) -> f64 {
-        self.free[step]
+        self.phases[self.steps[step].phase].limits.increment
     }
 
     /// Finds what acts at the start of an increment: contact, loads with their coefficients, damping.
@@ -219,9 +221,10 @@ impl ExplicitModel {
         if first.0 >= far {
             return if first.0 < free.0 { first } else { free };
         }
-        let (mut low, mut high, mut row) = (first.0.min(far), far, first.1);
+        // Sizes of any order of magnitude: the bracket is halved on a logarithmic scale.
+        let (mut low, mut high, mut row) = (first.0, far, first.1);
         for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
+            let middle = (low * high).sqrt();
             let found = at(middle, &mut work.limit);
             if found.0 >= middle {
                 low = middle;
@@ -317,13 +320,15 @@ impl ExplicitModel {
             (0..2).for_each(|k| power.viscous[k] += resisted[k]);
         }
         let stand = Stand { strain, kinetic: sums.kinetic, stored };
-        // Pairs that come or go take what they store with them.
-        if memory.last == 0.0 || (memory.begins && plan.changed) {
-            memory.ledger.count_anew(stored, &power, memory.last);
+        if memory.last == 0.0 {
+            memory.ledger.stored_start = stored;
+        } else if memory.begins && plan.changed {
+            // Pairs that come or go take what they store with them.
+            memory.ledger.count_anew(stored, &power, before);
         }
-        let energies = memory.ledger.book(stand, &power, memory.last, size);
+        let energies = memory.ledger.book(stand, &power, before, size);
         self.keep_statuses(plan, memory);
-        Ok(Found { energies })
+        Ok(Found { energies, momentum: sums.momentum })
     }
 
     /// `Σ A U(h)` at the start of the increment.

@@ -47,6 +47,8 @@ pub struct Sums {
     pub before: f64,
     /// See `before`.
     pub after: f64,
+    /// Largest momentum of a direction [mass·length/time].
+    pub momentum: f64,
 }
 
 /// Work space.
@@ -148,6 +150,7 @@ pub fn kick(
         for d in 0..3 {
             let momentum: f64 = (0..3).map(|e| block[3 * d + e] * v[at + e]).sum();
             sums.kinetic += 0.5 * before[d] * momentum;
+            sums.momentum = sums.momentum.max(momentum.abs());
             sums.after += forces[node as usize][d] * v[at + d];
         }
     }
@@ -156,27 +159,29 @@ pub fn kick(
 
 /// Nodes all of whose directions stand alone.
 fn pass(inertia: &Inertia, kick: Kick, forces: &[[f64; 3]], vectors: &mut Vectors<'_>) -> Sums {
-    let (mut kinetic, mut before, mut after) = (0.0, 0.0, 0.0);
+    let (mut kinetic, mut before, mut after, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
     let nodes = vectors.u.iter_mut().zip(vectors.v.iter_mut()).zip(vectors.a.iter_mut());
     let known = inertia.masses.iter().zip(&inertia.inverse).zip(&inertia.alone);
     for (((u, v), a), (f, ((mass, inverse), alone))) in nodes.zip(forces.iter().zip(known)) {
         if *alone != 7 {
             continue;
         }
-        let mut momentum = 0.0;
+        let (mut momentum, mut fastest) = (0.0, 0.0f64);
         for d in 0..3 {
             let acceleration = (f[d] - a[d]) * inverse;
             let next = v[d] + kick.mean * acceleration;
             momentum += v[d] * next;
             before += f[d] * v[d];
             after += f[d] * next;
+            fastest = fastest.max(next.abs());
             a[d] = acceleration;
             v[d] = next;
             u[d] += kick.size * next;
         }
         kinetic += mass * momentum;
+        largest = largest.max(mass * fastest);
     }
-    Sums { kinetic: 0.5 * kinetic, before, after }
+    Sums { kinetic: 0.5 * kinetic, before, after, momentum: largest }
 }
 
 /// Gives dependent directions what those that they depend on have.

@@ -32,5 +32,5 @@ mod stable;
 mod tests;
 mod viscosity;
 
-pub use increment::{ExplicitWork, Memory};
-pub use model::{ExplicitModel, Setting};
+pub use increment::{ExplicitWork, Found, Memory};
+pub use model::{ExplicitModel, Setting, UNLIMITED};

@@ -17,7 +17,7 @@ use crate::solve::columns::Column;
 use crate::solve::constraints::Constraints;
 
 /// Part of the step that an increment has where nothing limits it.
-const UNLIMITED: f64 = 1e-3;
+pub const UNLIMITED: f64 = 1e-3;
 /// Nodes named in a message.
 const NAMED: usize = 8;
 
@@ -48,8 +48,6 @@ pub struct ExplicitModel {
     pub(super) laws: Laws,
     pub(super) phases: Vec<Phase>,
     pub(super) steps: Vec<StepPlan>,
-    /// Stable increment of each step without contact \[time\].
-    pub(super) free: Vec<f64>,
     /// Findings that leave the answer standing.
     pub warnings: Vec<Diagnostic>,
 }
@@ -69,9 +67,10 @@ pub fn control(model: &Model, step: usize) -> &ExplicitControl {
     }
 }
 
-/// Increment of a step that contact leaves as it is, given the stable one \[time\].
+/// Increment that default penalties are made for, given the stable one without contact \[time\].
 fn free_increment(control: &ExplicitControl, stable: f64) -> f64 {
-    if stable.is_finite() {
+    // What lets go a whole step in one increment limits nothing.
+    if stable < control.period {
         return stable;
     }
     match (control.increments, control.increment_max) {
@@ -95,8 +94,7 @@ impl ExplicitModel {
         let source = Source { model, elasticities, constraints, columns, nodal, row_points, parts: &parts };
         let laws = rules::laws(model).map_err(|message| vec![error("*SURFACE BEHAVIOR", message, "")])?;
         let mut factors = vec![1.0; parts.len()];
-        let mut this =
-            Self { stiffness, laws, phases: Vec::new(), steps: Vec::new(), free: Vec::new(), warnings: Vec::new() };
+        let mut this = Self { stiffness, laws, phases: Vec::new(), steps: Vec::new(), warnings: Vec::new() };
         let mut bulk_before = None;
         for step in 0..model.steps.len() {
             let control = control(model, step);
@@ -118,7 +116,6 @@ impl ExplicitModel {
                 .last()
                 .is_some_and(|before| before.rules.iter().zip(&rules).any(|(a, b)| a.acts != b.acts || a.law != b.law));
             this.steps.push(StepPlan::new(index, phase, &this.laws, rules, changed));
-            this.free.push(free);
         }
         let errors = this.findings(setting, &source);
         if !errors.is_empty() {

@@ -1,9 +1,9 @@
 //! Explicit increments: as large as is stable, or as the deck says; none is repeated.
 
 use crate::explicit::kinematic::Refusal;
-use crate::explicit::{ExplicitModel, ExplicitWork, Memory};
+use crate::explicit::{ExplicitModel, ExplicitWork, Found, Memory, UNLIMITED};
 use crate::model::{ExplicitControl, ExplicitIncrements, NodeId, Procedure};
-use crate::procedure::interval::Interval;
+use crate::procedure::interval::{Interval, rounded};
 use crate::simulation::{AdvanceOutcome, IncrementReport, Simulation, StatusChange, Watch};
 
 /// Automatic increments keep their size until the stable one falls below it, or rises above it by this part: energies add up
@@ -11,6 +11,9 @@ use crate::simulation::{AdvanceOutcome, IncrementReport, Simulation, StatusChang
 const KEPT: f64 = 0.8;
 /// Part by which a size of the deck may exceed the stable one: what rounding makes of a limit that an analyst has worked out.
 const STABLE_TOLERANCE: f64 = 1e-6;
+/// So many of the last increments of a request or a step share the time that is left: sizes that change little change energies
+/// little.
+const SHARING: f64 = 16.0;
 /// Energy, relative to what was there and what loads have done, that only an unstable motion has.
 const UNSTABLE: f64 = 100.0;
 /// Part of a face that a closed point may slide before small sliding no longer describes it.
@@ -27,20 +30,17 @@ struct Next {
     clipped: bool,
 }
 
-/// End of an automatic increment of a size: on its grid, on the end of the request or the step, or half-way to it where the rest is
-/// less than two.
-fn next_automatic(now: f64, size: f64, grid: f64, bound: f64, tolerance: f64) -> Next {
+/// End of an automatic increment of a size: on its grid; the last ones before the end of the request or the step share what is left.
+fn next_automatic(now: f64, size: f64, grid: f64, bound: f64) -> Next {
     let rest = bound - now;
-    if (grid - bound).abs() <= tolerance.max(1e-9 * size) && (rest - size).abs() <= 1e-9 * size {
-        return Next { end: bound, size, clipped: false };
+    let left = (rest / size - 1e-9).ceil().max(1.0);
+    if left > SHARING {
+        return Next { end: grid, size, clipped: false };
     }
-    if rest <= size * (1.0 + 1e-9) {
-        return Next { end: bound, size: rest, clipped: true };
-    }
-    if rest < 2.0 * size * (1.0 - 1e-9) {
-        return Next { end: now + 0.5 * rest, size: 0.5 * rest, clipped: true };
-    }
-    Next { end: grid, size, clipped: false }
+    let share = rest / left;
+    let same = (share - size).abs() <= 1e-9 * size;
+    let end = if left == 1.0 { bound } else { now + share };
+    Next { end, size: if same { size } else { rounded(share) }, clipped: true }
 }
 
 /// End of an increment of a given size: on the grid `k · size` of the step, or on the end of the request or the step.
@@ -109,7 +109,7 @@ impl Simulation {
             ExplicitIncrements::Direct(size) => size,
             ExplicitIncrements::Automatic { scale } => {
                 let largest = control.increment_max.unwrap_or(f64::INFINITY);
-                (scale * model.free_increment(step)).min(largest)
+                (scale * model.free_increment(step)).min(largest).min(control.period)
             }
         };
         let (stable, row) = {
@@ -133,7 +133,7 @@ impl Simulation {
                 Ok(found) => {
                     std::mem::swap(&mut self.state.coefficients, &mut coefficients);
                     self.work.coefficients = coefficients;
-                    Ok(self.accept_explicit(next, found.energies, stable))
+                    Ok(self.accept_explicit(next, interval, found, stable))
                 }
                 Err(refusal) => {
                     self.work.coefficients = coefficients;
@@ -193,7 +193,9 @@ impl Simulation {
                 Ok(next)
             }
             ExplicitIncrements::Automatic { scale } => {
-                let limit = wished.min(scale * stable);
+                // Where nothing limits it the deck should: a part of the step is a guess.
+                let free = control.increment_max.is_none() && stable >= period;
+                let limit = if free { UNLIMITED * period } else { wished.min(scale * stable) };
                 if !(limit > 0.0 && limit.is_finite()) {
                     let what = self.limiting(row, work);
                     return Err(format!("{what} allows no increment"));
@@ -204,7 +206,7 @@ impl Simulation {
                 }
                 let size = self.state.increment_next;
                 let grid = self.state.increment_anchor + f64::from(self.state.increment_index + 1) * size;
-                Ok(next_automatic(now, size, grid, bound, tolerance))
+                Ok(next_automatic(now, size, grid, bound))
             }
         }
     }
@@ -225,8 +227,11 @@ impl Simulation {
     }
 
     /// Makes an increment the state.
-    fn accept_explicit(&mut self, next: Next, energies: crate::simulation::Energies, stable: f64) -> IncrementReport {
+    fn accept_explicit(&mut self, next: Next, interval: &Interval, found: Found, stable: f64) -> IncrementReport {
         let prepared = self.prepared.clone();
+        let mut columns = std::mem::take(&mut self.work.columns);
+        self.columns_at(next.end, interval, &mut columns);
+        let energies = found.energies;
         let points = prepared.points.len();
         let state = &mut self.state;
         let motion = state.motion.as_mut().expect("an explicit step has a motion");
@@ -237,6 +242,12 @@ impl Simulation {
         motion.energy_max =
             largest.iter().fold(motion.energy_max, |m, e| m.max(e.abs())).max(energies.impact_loss.abs());
         motion.energies = energies;
+        motion.momentum_max = motion.momentum_max.max(found.momentum);
+        motion.rates.clear();
+        motion.rates.extend(columns.iter().map(|column| column.rate));
+        motion.curvatures.clear();
+        motion.curvatures.extend(columns.iter().map(|column| column.acceleration));
+        self.work.columns = columns;
         (motion.increment_last, motion.size_before) = (next.size, next.size);
         let n = prepared.rows.count();
         for (i, point) in prepared.points.iter().enumerate().filter(|(i, _)| state.closed[*i] && !state.stuck[*i]) {
@@ -376,12 +387,17 @@ mod tests {
 
     #[test]
     fn the_last_increments_of_a_request_share_what_is_left() {
-        let next = next_automatic(0.0, 0.3, 0.3, 1.0, 1e-12);
+        let next = next_automatic(0.0, 0.3, 0.3, 10.0);
         assert_eq!(next, Next { end: 0.3, size: 0.3, clipped: false });
-        let next = next_automatic(0.6, 0.3, 0.9, 1.0, 1e-12);
-        assert!(next.clipped && (next.size - 0.2).abs() < 1e-15 && (next.end - 0.8).abs() < 1e-15);
-        let next = next_automatic(0.8, 0.3, 1.1, 1.0, 1e-12);
-        assert!(next.clipped && next.end == 1.0);
+        let (mut now, mut count) = (0.0, 0);
+        while now < 1.0 {
+            let next = next_automatic(now, 0.3, now + 0.3, 1.0);
+            assert!(next.clipped && (next.size - 0.25).abs() < 1e-10, "{next:?}");
+            (now, count) = (next.end, count + 1);
+        }
+        assert_eq!((now, count), (1.0, 4));
+        let next = next_automatic(0.0, 0.25, 0.25, 1.0);
+        assert_eq!(next, Next { end: 0.25, size: 0.25, clipped: true });
     }
 
     #[test]
