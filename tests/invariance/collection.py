@@ -13,10 +13,12 @@ from oracle import comparison as held
 from oracle import deck as oracle_deck
 from oracle import floating_comparison as floating
 from oracle.parallel import in_parallel
+from verification.dynamics import samples
 
 from .recording import FOLDER
 
-# Total forces of large meshes are not run again: the generated decks below are the same at sizes that take no time.
+# Total forces of large meshes are not run again: the generated decks below are the same at sizes that take no time. Decks that move take
+# thousands of increments: their samples stand for them.
 LARGE = "not test_totals"
 
 
@@ -34,7 +36,8 @@ def verification_decks(folder):
     paths = [support.ROOT / name for name in ("tests", "examples", "benches")]
     environment = os.environ | {FOLDER: str(folder), "PYTHONPATH": os.pathsep.join(map(str, paths))}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "invariance.recording", "-p", "no:cacheprovider"]
-    tests = ["-k", LARGE, str(support.ROOT / "tests" / "verification")]
+    folder_of_tests = support.ROOT / "tests" / "verification"
+    tests = ["-k", LARGE, "--ignore", str(folder_of_tests / "dynamics"), str(folder_of_tests)]
     subprocess.run([*command, *tests], cwd=support.ROOT, env=environment, capture_output=True, check=False)
     decks = {}
     for path in sorted(Path(folder).glob("*.inp")):
@@ -43,6 +46,11 @@ def verification_decks(folder):
         text = path.read_text()
         decks.setdefault((text, *about["arguments"]), Deck(name, text, about["arguments"]))
     return list(decks.values())
+
+
+def moving_decks():
+    """Decks that move through contact, implicit and explicit."""
+    return [Deck(name, text, []) for name, text in samples.decks().items()]
 
 
 def generated_decks(folder):

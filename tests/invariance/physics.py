@@ -7,7 +7,7 @@ import numpy as np
 from .rotation import EXTRA
 
 TOUCH = 1e-9
-ENERGIES = ["ALLSE", "ALLKE", "ALLWK", "ALLFD", "ALLVD", "ALLCCE", "ETOTAL"]
+ENERGIES = ["ALLSE", "ALLKE", "ALLWK", "ALLFD", "ALLVD", "ALLCCE", "IMPACT_LOSS", "ETOTAL"]
 
 
 @dataclass

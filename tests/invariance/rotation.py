@@ -13,6 +13,8 @@ from .cards import Card
 from .elimination import Elimination
 
 EXTRA = "OLDAXES"
+# Elements along axes.
+READING = ("SPRING1", "SPRING2", "DASHPOT1", "DASHPOT2")
 
 
 class Turned:
@@ -59,9 +61,11 @@ class Turned:
                 if any(line[1:4]):
                     direction = self.rotation @ [float(x or 0.0) for x in line[1:4]]
                     line[1:4] = [repr(float(x)) for x in direction]
+        elif card.keyword == "*INITIAL CONDITIONS":
+            card.data = self.velocities(card.data)
         elif card.keyword == "*EQUATION":
             card = self.equation(card)
-        elif card.keyword == "*ELEMENT" and card.parameters["TYPE"].upper() in ("SPRING1", "SPRING2"):
+        elif card.keyword == "*ELEMENT" and card.parameters["TYPE"].upper() in READING:
             for line in card.data:
                 line[1:] = [self.reading(int(node)) for node in line[1:]]
         return card
@@ -97,6 +101,17 @@ class Turned:
             [region, str(j + 1), repr(float(value))]
             for region, force in touched.items()
             for j, value in enumerate(self.rotation @ force)
+        ]
+
+    def velocities(self, data):
+        """Initial velocities by components."""
+        found = {}
+        for region, direction, value in data:
+            found.setdefault(region, np.zeros(3))[int(direction) - 1] = float(value)
+        return [
+            [region, str(j + 1), repr(float(value))]
+            for region, velocity in found.items()
+            for j, value in enumerate(self.rotation @ velocity)
         ]
 
     def equation(self, card):

@@ -51,7 +51,10 @@ def converted(cards, units, sets, dialect):
                 raise ValueError("*SURFACE BEHAVIOR without *SURFACE INTERACTION or *GAP")
             columns(data, law_factors(card.parameters, units))
         elif name == "*CONTACT DAMPING":
-            columns(data, {0: stiffness, 1: units.length})
+            by_fraction = card.parameters.get("DEFINITION", "").startswith("CRITICAL")
+            columns(data, {} if by_fraction else {0: stiffness, 1: units.length})
+        elif name == "*INITIAL CONDITIONS":
+            columns(data, {2: units.length})
         elif name == "*CONTACT CONTROLS":
             for parameter, factor in CONTROLS.items():
                 if parameter in card.parameters:
@@ -70,7 +73,7 @@ def converted(cards, units, sets, dialect):
                 line.extend([""] * (5 - len(line)))
                 line[4] = line[4] or "1."
             columns(data, {0: units.length, 4: units.scale(2)})
-        elif name == "*SPRING":
+        elif name in ("*SPRING", "*DASHPOT"):
             columns(data[-1:], {0: units.scale(-1, 1)})
         elif name == "*MASS":
             columns(data, {0: units.scale(-1, 1)})
@@ -90,7 +93,7 @@ def law_factors(parameters, units):
         "HARD": {},
         "LINEAR": {0: stiffness},
         "TABULAR": {0: pressure, 1: units.length},
-        "EXPONENTIAL": {0: units.length, 1: pressure},
+        "EXPONENTIAL": {0: units.length, 1: pressure, 2: stiffness},
     }
     return by_law[parameters.get("PRESSURE-OVERCLOSURE", "HARD").upper()]
 
@@ -107,6 +110,7 @@ UNCHANGED = {
     *("*HEADING", "*ELEMENT", "*NSET", "*ELSET", "*SURFACE", "*MATERIAL", "*SOLID SECTION", "*EQUATION", "*AMPLITUDE"),
     *("*CONTACT PAIR", "*STEP", "*STATIC", "*END STEP", "*NODE PRINT", "*NODE FILE", "*EL PRINT", "*EL FILE"),
     *("*CONTACT PRINT", "*CONTACT FILE", "*FRICTION", "*CHANGE FRICTION", "*MODEL CHANGE"),
+    *("*DYNAMIC", "*BULK VISCOSITY", "*DAMPING"),
 }
 # Powers (length, force) of parameters of *CONTACT CONTROLS.
 CONTROLS = {"ABSOLUTE PENETRATION TOLERANCE": (1, 0), "UERRMX": (1, 0), "PERRMX": (-2, 1)}

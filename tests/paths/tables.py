@@ -15,6 +15,8 @@ FAMILIES = {
     "pressure": ("CPRESS", "CSHEAR", "CDPRESS", "CDSHEAR"),
     "moment": ("CMN", "CMS", "CMT", "CTRQ", "RM"),
     "rotation": ("UR",),
+    "velocity": ("V",),
+    "acceleration": ("A",),
     "place": ("XN", "XS", "XT"),
 }
 # Displacements below this part of the deck's size are not to be had to TOLERANCE: coordinates have 16 digits.

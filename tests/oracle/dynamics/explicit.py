@@ -18,32 +18,36 @@ def reduced(rows, mass):
 
 
 def hard_correction(rows, mass, secondary, depth, dt):
-    """Accelerations of hard kinematic contact: forces that would bring every secondary node back, resisted by both sides.
+    """Accelerations of hard kinematic contact: forces that would bring every secondary node back, resisted by both sides. Points that
+    would be pulled, because others push their primary away, take no part.
 
     `secondary[i]` is the degree of freedom of point i's own node; the other entries of its row are the shape functions of the primary.
     """
-    push = np.zeros(len(mass))
-    inertia = mass.copy()
-    correction = np.zeros(len(mass))
-    active = np.flatnonzero(depth > 0.0)
+    active = depth > 0.0
+    while True:
+        correction, forces = corrected(rows, mass, secondary, depth, dt, np.flatnonzero(active))
+        pulled = active & (forces < 0.0)
+        if not pulled.any():
+            return correction, forces
+        active &= ~pulled
+
+
+def corrected(rows, mass, secondary, depth, dt, active):
+    """The corrector with these points."""
+    push, inertia, correction = np.zeros(len(mass)), mass.copy(), np.zeros(len(mass))
+    primary = {i: [j for j in np.flatnonzero(rows[i]) if j != secondary[i]] for i in active}
     for i in active:
-        own = secondary[i]
-        force = mass[own] * depth[i] / dt**2
-        for j in np.flatnonzero(rows[i]):
-            if j != own:
-                push[j] += abs(rows[i, j]) * force
-                inertia[j] += abs(rows[i, j]) * mass[own]
+        for j in primary[i]:
+            push[j] += abs(rows[i, j]) * mass[secondary[i]] * depth[i] / dt**2
+            inertia[j] += abs(rows[i, j]) * mass[secondary[i]]
     moved = np.where(push > 0.0, push / inertia, 0.0)
     forces = np.zeros(len(depth))
     for i in active:
-        own = secondary[i]
-        sign = -np.sign(rows[i, own])
-        back = depth[i] / dt**2 - sum(abs(rows[i, j]) * moved[j] for j in np.flatnonzero(rows[i]) if j != own)
-        correction[own] += sign * back
-        forces[i] = mass[own] * back
-        for j in np.flatnonzero(rows[i]):
-            if j != own:
-                correction[j] = -sign * moved[j]
+        sign = -np.sign(rows[i, secondary[i]])
+        back = depth[i] / dt**2 - sum(abs(rows[i, j]) * moved[j] for j in primary[i])
+        correction[secondary[i]] += sign * back
+        forces[i] = mass[secondary[i]] * back
+        correction[primary[i]] = -sign * moved[primary[i]]
     return correction, forces
 
 

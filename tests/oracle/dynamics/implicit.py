@@ -27,12 +27,13 @@ class Implicit:
         self.closed = np.zeros(len(contact.initial), bool)
         self.multiplier = np.zeros(len(contact.initial))
         self.loss, self.viscous, self.events = 0.0, 0.0, []
-        if contact.law is None:
-            h, speed = self.overclosure(self.u), contact.rows @ self.v
-            self.closed = (h > 0.0) | ((h == 0.0) & (speed > 0.0))
-            self.offset[self.closed] -= h[self.closed]
-            self.impulse(self.closed.copy())
+        # Points that open and close again and again at one time: they stay closed until time goes on.
+        self.forget()
         self.accelerate()
+
+    def forget(self):
+        """Time goes on: nothing has opened at this time yet, and nothing is kept closed."""
+        self.opened, self.kept = (np.zeros(len(self.s.contact.initial), bool) for _ in range(2))
 
     def overclosure(self, u):
         """Of every point, with the shifts that events have made."""
@@ -67,14 +68,15 @@ class Implicit:
         return solved[:size], multipliers
 
     def accelerate(self):
-        """Accelerations from the equations of motion; points that would be pulled open."""
+        """Accelerations from the equations of motion; points that would be pulled open, unless they have just done so in vain."""
         while True:
             force, _, _ = self.residual(self.time, self.u, self.v)
             self.a, self.multiplier = self.constrained(self.s.mass, -force, np.zeros(self.closed.sum()))
-            pulled = self.closed & (self.multiplier < 0.0)
+            pulled = self.closed & (self.multiplier < -self.rounding(self.s.mass @ np.abs(self.a))) & ~self.kept
             if not pulled.any():
                 return
             self.closed &= ~pulled
+            self.opened |= pulled
 
     def impulse(self, candidates):
         """Velocities after impact; points whose impulse would pull take no part."""
@@ -96,14 +98,16 @@ class Implicit:
         self.events.append((self.time, float(impulses.sum()), lost))
         self.v = after
         # A closed point that took no part moves away.
-        self.closed &= acting | (self.s.contact.rows @ self.v >= 0.0)
+        leaving = self.closed & ~acting & (self.s.contact.rows @ self.v < 0.0) & ~self.kept
+        self.opened |= leaving
+        self.closed &= ~leaving
 
     def trial(self, dt):
         """(u, v, a, multipliers) at the end of a step with the present contact set."""
         s, c = self.s, self.s.contact
         al, be, ga = self.alpha, self.beta, self.gamma
         before, _, _ = self.residual(self.time, self.u, self.v)
-        a, multipliers = self.a.copy(), self.multiplier
+        a, multipliers, last = self.a.copy(), self.multiplier, np.inf
         for _ in range(200):
             u = self.u + dt * self.v + dt * dt * ((0.5 - be) * self.a + be * a)
             v = self.v + dt * ((1.0 - ga) * self.a + ga * a)
@@ -113,8 +117,13 @@ class Implicit:
             gap = -self.overclosure(u)[self.closed] / (be * dt * dt)
             change, multipliers = self.constrained(tangent, right, gap)
             a = a + change
-            if np.abs(change).max() <= 1e-13 * np.abs(a).max() + 1e-300 or (c.law is None and c.damping is None and _):
+            if c.law is None and c.damping is None and _:
                 break
+            # Rounding is reached where corrections no longer shrink.
+            size = np.abs(change).max() / (np.abs(a).max() + 1e-300)
+            if size <= 1e-15 or (size < 1e-9 and size >= 0.1 * last):
+                break
+            last = size
         u = self.u + dt * self.v + dt * dt * ((0.5 - be) * self.a + be * a)
         v = self.v + dt * ((1.0 - ga) * self.a + ga * a)
         return u, v, a, multipliers
@@ -150,9 +159,10 @@ class Implicit:
                 self.accept(size, state)
                 first = False
                 continue
-            listed, fraction = self.violations(state)
+            listed, fraction = self.violations(state, size)
             if not listed.any():
                 self.accept(size, state)
+                self.forget()
                 first = False
                 continue
             self.accept(
@@ -160,6 +170,9 @@ class Implicit:
                 self.trial(fraction * size) if fraction > 0.0 else (self.u, self.v, self.a, self.multiplier),
             )
             closing = listed & ~self.closed
+            if fraction > 0.0:
+                self.forget()
+            self.kept |= closing & self.opened
             h = self.overclosure(self.u)
             self.offset[closing] -= h[closing]
             self.closed ^= listed
@@ -169,11 +182,15 @@ class Implicit:
             first = True
         raise RuntimeError("too many events in an increment")
 
-    def violations(self, state):
+    def rounding(self, values):
+        """What is nothing beside these values."""
+        return 1e-12 * np.abs(values).max()
+
+    def violations(self, state, size):
         """Points that break the hard conditions at the end of a step, and the mean fraction at which they do."""
         h0, h1, multipliers = self.overclosure(self.u), self.overclosure(state[0]), state[3]
         closing = ~self.closed & (h1 > 1e-13 * np.abs(h0 - h1).max(initial=0.0))
-        opening = self.closed & (multipliers < 0.0)
+        opening = self.closed & ~self.kept & (multipliers < -self.rounding(self.s.mass @ np.abs(self.v)) / size)
         fractions = np.zeros(len(h0))
         fractions[closing] = (-h0 / np.where(h1 == h0, 1.0, h1 - h0))[closing].clip(0.0, 1.0)
         held = np.maximum(self.multiplier, 0.0)

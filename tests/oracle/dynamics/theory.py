@@ -1,5 +1,6 @@
 """Closed forms of impact: one degree of freedom on a law, damped contact, plastic impact, bars on a wall."""
 
+import itertools
 import math
 
 import numpy as np
@@ -21,11 +22,11 @@ def rebound(law, area, mass, speed, kinks=()):
     edges = sorted({*edges, *np.linspace(0.0, math.sqrt(depth - law.onset), 9)})
     places, weights = np.polynomial.legendre.leggauss(60)
     half = 0.0
-    for a, b in zip(edges, edges[1:], strict=False):
+    for a, b in itertools.pairwise(edges):
         for x, weight in zip(0.5 * (a + b) + 0.5 * (b - a) * places, 0.5 * (b - a) * weights, strict=True):
             left = work - area * law.energy(depth - x * x)
             half += weight * 2.0 * x / math.sqrt(2.0 * left / mass)
-    return 2.0 * half, depth
+    return float(2.0 * half), float(depth)
 
 
 def drop(mass, gravity, height, stiffness):

@@ -4,10 +4,12 @@ The wall is the upper face, z = 0, of a brick whose nodes are all held; the plat
 nothing, so that its four corner masses are the plate. Steps are implicit or explicit, with every increment written.
 """
 
+import copy
 import math
 from dataclasses import dataclass, field
 
 import numpy as np
+import pytest
 
 import support
 
@@ -156,11 +158,11 @@ class Scene:
         card = ["*DYNAMIC", "DIRECT", *([f"ALPHA={alpha!r}"] if alpha is not None else []), *words]
         return ["*STEP, INC=1000000", ", ".join(card), f"{dt!r}, {dt * increments!r}", *lines, *output]
 
-    def central(self, dt, increments, *lines, viscosity=(0.0, 0.0), output=OUTPUT):
-        """An explicit step of equal increments."""
+    def central(self, dt, increments, *lines, viscosity=(0.0, 0.0), output=OUTPUT, pairs=True):
+        """An explicit step of equal increments; its contact pairs are those of an earlier step where `pairs` is not set."""
         head = ["*STEP", "*DYNAMIC, EXPLICIT, DIRECT USER CONTROL", f"{dt!r}, {dt * increments!r}"]
         head += ["*BULK VISCOSITY", ", ".join(map(repr, viscosity))]
-        return [*head, *self.pairs, *lines, *output]
+        return [*head, *(self.pairs if pairs else []), *lines, *output]
 
     def step(self, dt, increments, *lines, **options):
         """A step of equal increments in the procedure of the scene."""
@@ -183,6 +185,16 @@ class Run:
         self.contact = {}
         for row in self.result.table("contact"):
             self.contact.setdefault(int(row["node"]), []).append(row)
+
+    def at(self, times):
+        """The same run at some of its times alone: increments that end at events between them are left out."""
+        picked = [int(np.abs(self.time - t).argmin()) for t in times]
+        assert self.time[picked] == pytest.approx(times, rel=1e-9), "the run has no increments that end there"
+        other = copy.copy(self)
+        other.history, other.time = [self.history[i] for i in picked], self.time[picked]
+        other.by_label = {n: [rows[i] for i in picked] for n, rows in self.by_label.items()}
+        other.contact = {n: [rows[i] for i in picked] for n, rows in self.contact.items()}
+        return other
 
     def node(self, label, column):
         """A column of JOB_nodes.csv of a node."""
@@ -208,6 +220,7 @@ class Run:
 
 def solve(write_deck, folder, text, name="deck.inp", clean=True):
     """Runs deck text; its audit is clean."""
+    folder.mkdir(parents=True, exist_ok=True)
     result = support.run(write_deck(text, name), folder)
     if clean:
         assert result.summary()["audit"] == []
