@@ -1,6 +1,7 @@
 //! The audit of a solution: what a careful analyst would check before believing it.
 
 use crate::model::Enforcement;
+use crate::nodal::largest;
 use crate::simulation::Simulation;
 use crate::state::Motion;
 
@@ -62,7 +63,11 @@ impl Simulation {
     fn audit_points(&self, findings: &mut Vec<String>) {
         let prepared = &self.prepared;
         let moment = Self::moment(prepared, self.state.step as usize, self.state.step_time);
-        let scale = self.work.free.iter().fold(0.0f64, |m, h| m.max(h.abs()));
+        // What contact prevents: overclosures without its forces, in dynamic steps the way of the bodies.
+        let scale = match &self.state.motion {
+            None => self.work.free.iter().fold(0.0f64, |m, h| m.max(h.abs())),
+            Some(motion) => largest(&motion.displacement),
+        };
         // Of coordinates, and of motions that go a long way.
         let motion = self.state.motions.iter().fold(0.0f64, |m, a| m.max(a.abs()));
         let rounding = PLACE_ROUNDING * prepared.extent.max(motion);
