@@ -159,13 +159,15 @@ impl Simulation {
     /// Compares the residual half-way with its tolerance; whether a larger increment would do.
     pub(crate) fn check_half_increment(&mut self, end: f64, size: f64, interval: &Interval) -> Result<bool, Failure> {
         let control = self.dynamic_control();
+        if control.direct || control.half_increment == HalfIncrement::Unchecked {
+            return Ok(true);
+        }
+        let (residual, inertia) = self.half_increment_residual(end, size, interval);
         let tolerance = match control.half_increment {
-            _ if control.direct => return Ok(true),
-            HalfIncrement::Unchecked => return Ok(true),
+            HalfIncrement::Unchecked => f64::INFINITY,
             HalfIncrement::Force(force) => force,
-            HalfIncrement::Relative(factor) => factor * self.force_scale(),
+            HalfIncrement::Relative(factor) => factor * self.force_scale().max(inertia),
         };
-        let residual = self.half_increment_residual(end, size, interval);
         if residual > tolerance {
             return Err(Failure::HalfIncrement { residual, tolerance });
         }
@@ -183,8 +185,8 @@ impl Simulation {
     }
 
     /// Largest force out of balance in the middle of the trial, accelerations going linearly from start to end: what a free direction
-    /// would need to follow.
-    fn half_increment_residual(&mut self, end: f64, size: f64, interval: &Interval) -> f64 {
+    /// would need to follow; and the largest inertia force there.
+    fn half_increment_residual(&mut self, end: f64, size: f64, interval: &Interval) -> (f64, f64) {
         let prepared = self.prepared.clone();
         let (nodal, model) = (prepared.nodal(), prepared.implicit());
         let control = self.dynamic_control();
@@ -207,11 +209,12 @@ impl Simulation {
             }
         }
         let mut force = vec![[0.0; 3]; nodes];
+        model.mass(control.mass).multiply(&a, &mut force);
+        let inertia = largest(&force);
         load(&prepared.loading.columns, &coefficients, &mut own.change);
         for ((f, load), unbalance) in force.iter_mut().zip(&own.change).zip(&motion.unbalance) {
-            (0..3).for_each(|d| f[d] = -weight * load[d] - control.alpha * unbalance[d]);
+            (0..3).for_each(|d| f[d] -= weight * load[d] + control.alpha * unbalance[d]);
         }
-        model.mass(control.mass).multiply_add(1.0, &a, &mut force);
         model.stiffness.multiply_add(weight, &u, &mut force);
         if let Some(damping) = model.damping(control.mass) {
             damping.multiply_add(weight, &v, &mut force);
@@ -232,6 +235,6 @@ impl Simulation {
         for &at in &nodal.prescribed {
             force.as_flattened_mut()[at] = 0.0;
         }
-        largest(&force)
+        (largest(&force), inertia)
     }
 }
