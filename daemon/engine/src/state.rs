@@ -50,6 +50,8 @@ pub struct Motion {
     pub curvatures: Vec<f64>,
     /// Size of the last increment \[time\]; 0 before the first.
     pub increment_last: f64,
+    /// Whether each contact point has opened at the present time: one that closes again at that time stays closed until time goes on.
+    pub opened: Vec<bool>,
     /// Events in a row that ended their increments.
     pub located: u32,
     /// Largest momentum of a node so far \[force·time\].
@@ -224,6 +226,7 @@ impl State {
             vectors.iter().all(|v| v.len() == nodes)
                 && (m.unbalance.is_empty() || m.unbalance.len() == nodes)
                 && m.offsets.len() == state.forces.len()
+                && m.opened.len() == state.latched.len()
                 && [&m.rates, &m.rates_start, &m.curvatures].iter().all(|v| v.len() == state.coefficients.len())
         };
         let dynamic = shape.dynamic.get(step).copied();
@@ -290,6 +293,7 @@ mod tests {
             acceleration: vector.clone(),
             reaction: vector,
             offsets: vec![0.0; 3],
+            opened: vec![false; 3],
             rates: vec![0.0; 2],
             rates_start: vec![0.0; 2],
             curvatures: vec![0.0; 2],

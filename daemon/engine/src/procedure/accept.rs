@@ -73,6 +73,7 @@ impl Simulation {
         std::mem::swap(&mut motion.velocity, &mut own.velocity);
         std::mem::swap(&mut motion.acceleration, &mut own.acceleration);
         motion.increment_last = size;
+        motion.opened.fill(false);
         std::mem::swap(&mut state.forces, &mut work.forces);
         std::mem::swap(&mut state.closed, &mut work.closed);
         std::mem::swap(&mut state.tangential, &mut work.tangential);

@@ -27,9 +27,6 @@ const PLACE_ROUNDING: f64 = 1e-14;
 /// Tension or impulse, relative to the largest force, that is rounding.
 const FORCE_ROUNDING: f64 = 1e-11;
 
-/// Openings of one point at one time: one that closes again and again stays closed for an increment, though it may pull.
-const OPENINGS_MAX: u8 = 2;
-
 /// What hard contact is about to do.
 pub(crate) struct Upcoming {
     /// When, as a part of the increment.
@@ -54,8 +51,7 @@ impl Simulation {
         for i in (0..prepared.points.len()).filter(|&i| is_hard(&moment, i)) {
             let closed = work.rows[i].wall == Wall::TwoSided;
             let multiplier = weight * work.forces[i];
-            let may_open = !state.latched[i] && self.implicit.openings[i] < OPENINGS_MAX;
-            if closed && may_open && multiplier < -FORCE_ROUNDING * scale {
+            if closed && self.may_open(i) && multiplier < -FORCE_ROUNDING * scale {
                 let before = state.forces[i].max(0.0);
                 event.fraction += before / (before - multiplier);
                 event.opening.push(i as u32);
@@ -76,7 +72,6 @@ impl Simulation {
         let moment = Self::moment(&prepared, self.state.step as usize, self.state.step_time);
         counts.solves.severe_discontinuity_iterations += 1;
         for &i in &event.opening {
-            self.implicit.openings[i as usize] += 1;
             self.open(i as usize);
         }
         for &i in &event.closing {
@@ -132,7 +127,14 @@ impl Simulation {
         Ok(())
     }
 
+    /// Whether a closed point may open: one that has done so in vain at this time stays closed, though it may pull, until time goes on.
+    fn may_open(&self, i: usize) -> bool {
+        !self.state.latched[i] && self.state.motion.as_ref().is_none_or(|motion| !motion.opened[i])
+    }
+
     fn open(&mut self, i: usize) {
+        let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
+        motion.opened[i] = true;
         self.state.closed[i] = false;
         self.state.stuck[i] = false;
         self.state.forces[i] = 0.0;
@@ -280,7 +282,7 @@ impl Simulation {
             operator.solver.solve(&operator.system, problem, &mut unknowns).map_err(Failure::Solve)?;
             let largest = forces.iter().fold(scale, |m, f| m.max(f.abs()));
             let pulls = |&i: &usize| {
-                rows[i].wall == Wall::TwoSided && !self.state.latched[i] && forces[i] < -FORCE_ROUNDING * largest
+                rows[i].wall == Wall::TwoSided && self.may_open(i) && forces[i] < -FORCE_ROUNDING * largest
             };
             let dropped: Vec<usize> = (0..points).filter(pulls).collect();
             if dropped.is_empty() {

@@ -29,8 +29,6 @@ pub(crate) struct ImplicitWork {
     /// Forces on the way.
     pub force: Vec<[f64; 3]>,
     pub change: Vec<[f64; 3]>,
-    /// How often each point has opened in the attempt.
-    pub openings: Vec<u8>,
     /// Loads at the start and at the end of the increment.
     pub loads: [Vec<[f64; 3]>; 2],
 }
@@ -74,8 +72,6 @@ impl Simulation {
         }
         let begun = self.state.step_time;
         let mut event = None;
-        self.implicit.openings.clear();
-        self.implicit.openings.resize(self.prepared.points.len(), 0);
         // New inputs at the same time act from now on: a motion does not jump.
         let mut easy = true;
         for tried in 0.. {

@@ -45,6 +45,7 @@ impl Simulation {
                     acceleration: vec![[0.0; 3]; nodes],
                     reaction: vec![[0.0; 3]; nodes],
                     offsets: vec![0.0; prepared.rows.count()],
+                    opened: vec![false; prepared.points.len()],
                     rates,
                     rates_start: vec![0.0; prepared.real_columns],
                     curvatures: vec![0.0; prepared.real_columns],
