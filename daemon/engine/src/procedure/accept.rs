@@ -6,11 +6,13 @@ use crate::nodal::{dot, largest, load};
 use crate::procedure::failure::Failure;
 use crate::procedure::interval::Interval;
 use crate::simulation::Simulation;
-use crate::solve::contact::Wall;
+use crate::solve::contact::{Curve, Row, Wall};
 
 /// Part of its tolerance that a half-increment residual stays below where an increment of twice the size is tried: it grows with the
 /// square of the size.
 const EASY: f64 = 0.2;
+/// By how much the work of softened contact may miss what its laws store in an increment, relative to the largest energy so far.
+const CONTACT_WORK: f64 = 1e-4;
 
 impl Simulation {
     /// Makes the trial in the work space the state.
@@ -172,7 +174,30 @@ impl Simulation {
         if residual > tolerance {
             return Err(Failure::HalfIncrement { residual, tolerance });
         }
-        Ok(residual < EASY * tolerance)
+        let (error, largest) = self.contact_work_error();
+        if error > CONTACT_WORK * largest {
+            return Err(Failure::ContactWork { error, largest });
+        }
+        Ok(residual < EASY * tolerance && error < EASY * CONTACT_WORK * largest)
+    }
+
+    /// By how much the work of softened contact and penalties in the trial misses what their curves store, and the largest energy so
+    /// far, kinetic energy of the trial included: a point that meets its curve, or bends along it, within an increment does work by
+    /// the trapezoidal rule \[energy\].
+    fn contact_work_error(&mut self) -> (f64, f64) {
+        let (prepared, form) = (self.prepared.clone(), self.dynamic_control().mass);
+        let own = &mut self.implicit;
+        prepared.implicit().mass(form).multiply(&own.velocity, &mut own.change);
+        let kinetic = 0.5 * dot(&own.change, &own.velocity);
+        let behaviors = &self.prepared.model.interactions;
+        let error = |(i, row): (usize, &Row)| {
+            let (h0, h1) = (self.derived.overclosures[i], self.work.overclosures[i]);
+            let [start, end] = [h0, h1].map(|h| row.law_of(|i| &behaviors[i].normal, h));
+            row.area * (0.5 * (start.pressure + end.pressure) * (h1 - h0) - (end.energy - start.energy)).abs()
+        };
+        let curves = self.work.rows.iter().enumerate().filter(|(_, row)| row.curve != Curve::None);
+        let largest = self.state.motion.as_ref().map_or(kinetic, |motion| motion.energy_max.max(kinetic));
+        (curves.map(error).sum(), largest)
     }
 
     /// Largest force at work so far, that of the trial included; what would stop the largest momentum within the step where that is more:

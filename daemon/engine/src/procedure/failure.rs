@@ -18,6 +18,8 @@ pub(crate) enum Failure {
     Events,
     /// A matrix without inverse, in words.
     Singular(String),
+    /// By how much the work of contact misses what its laws store, and the largest energy \[energy\].
+    ContactWork { error: f64, largest: f64 },
     /// The residual half-way through an increment and what it may be \[force\].
     HalfIncrement { residual: f64, tolerance: f64 },
 }
@@ -59,6 +61,9 @@ impl Failure {
                 "{after}: points of hard contact keep closing and opening at one time; smaller increments or a softened law may help"
             ),
             Failure::Singular(words) => format!("{after}: {words}"),
+            Failure::ContactWork { error, largest } => format!(
+                "{after}: contact meets its law too fast: its work misses the energy of the law by {error:e}, the largest energy so far is {largest:e}; a smaller least increment lets it follow"
+            ),
             Failure::HalfIncrement { residual, tolerance } => format!(
                 "{after}: forces half-way through the increment are out of balance by {residual:e}, more than {tolerance:e}; a larger HAFTOL or a smaller least increment lets it pass"
             ),
