@@ -82,7 +82,7 @@ impl Statics {
             }
         };
         announce(Phase::Condense);
-        let loads = floating.loads(&columns, bodies, &motions);
+        let loads = floating.loads(columns, bodies, motions);
         let (condensed, compliance) =
             Condensed::new(context, bodies, &prepared, &contributions, floating, loads, condense);
         for body in &mut prepared {
