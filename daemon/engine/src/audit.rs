@@ -89,7 +89,8 @@ impl Simulation {
                 .map_or(0.0, |m| m.overclosure_max * (1.0 + TOLERATED))
                 .max(moment.penetration_max(i).map_or(0.0, |(tolerance, _)| tolerance) * (1.0 + TOLERATED));
             let hard = match moment.enforcement(i) {
-                Some(Enforcement::Lagrange | Enforcement::AugmentedLagrange(_)) => moment.is_active(i),
+                Some(Enforcement::Lagrange) => moment.is_active(i) && moment.is_exact(i),
+                Some(Enforcement::AugmentedLagrange(_)) => moment.is_active(i),
                 Some(Enforcement::Penalty(_) | Enforcement::NonlinearPenalty(_)) | None => false,
             };
             if hard && self.state.step_time > 0.0 && overclosure > HARD_TOLERANCE * scale + rounding + allowed {
