@@ -110,6 +110,8 @@ pub enum Blame {
     Penetration,
     /// `*CONTACT PAIR`.
     Pair,
+    /// `*FRICTION`.
+    Friction,
 }
 
 /// A feature of contact.

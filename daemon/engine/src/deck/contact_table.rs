@@ -7,7 +7,6 @@ use super::keywords::{Keyword, Parameter as P};
 
 const NO_MORTAR: &str =
     "mortar contact is not solved; write TYPE=NODE TO SURFACE to have forces act at the secondary nodes";
-const NO_EXPLICIT: &str = "explicit contact is not solved";
 const NO_SLIDING: &str = "sliding is small";
 
 /// Keywords of contact.
@@ -66,7 +65,7 @@ pub const CONTACT: &[Keyword] = &[
             P::silent("SLIP TOLERANCE"),
             P::silent("ELASTIC SLIP"),
             P::silent("LAGRANGE"),
-            P::silent("TAUMAX"),
+            P::value("TAUMAX"),
             P::silent("SHEAR TRACTION SLOPE"),
             P::flag("ROUGH"),
             P::refused("USER", "contact is solved without friction"),
@@ -93,7 +92,12 @@ pub const CONTACT: &[Keyword] = &[
                     ("LINMORTAR", Refused(NO_MORTAR)),
                     ("PGLINMORTAR", Refused(NO_MORTAR)),
                     ("PGMORTAR", Refused(NO_MORTAR)),
-                    ("MASSLESS", Refused("it belongs to explicit dynamics; in statics write TYPE=NODE TO SURFACE")),
+                    (
+                        "MASSLESS",
+                        Refused(
+                            "it belongs to explicit steps of CalculiX, which are not solved: write TYPE=NODE TO SURFACE",
+                        ),
+                    ),
                 ],
             ),
             P::flag("SMALL SLIDING"),
@@ -119,13 +123,13 @@ pub const CONTACT: &[Keyword] = &[
         Model,
         Fields,
         &[
-            P::required("MASTER"),
-            P::required("SLAVE"),
+            P::value("MASTER"),
+            P::value("SLAVE"),
+            P::value("CPSET"),
             P::value("VALUE"),
             P::flag("TABULAR"),
             P::refused("INPUT", "bring the lines in with *INCLUDE under the keyword"),
             P::refused("BOLT", "threads are not modelled: mesh them, or give clearances"),
-            P::refused("CPSET", NO_EXPLICIT),
         ],
     ),
     Keyword::read(
@@ -153,12 +157,12 @@ pub const CONTACT: &[Keyword] = &[
                 "every enforcement converges to what it states, whether multipliers are unknowns or not",
             ),
             P::ignored("PERTURBATION TANGENT SCALE FACTOR", "it acts in linear perturbation steps only"),
-            P::refused("CPSET", NO_EXPLICIT),
-            P::refused("SCALE PENALTY", NO_EXPLICIT),
-            P::refused("FASTLOCALTRK", NO_EXPLICIT),
-            P::refused("GLOBTRKINC", NO_EXPLICIT),
-            P::refused("WARP CHECK PERIOD", NO_EXPLICIT),
-            P::refused("WARP CUT OFF", NO_EXPLICIT),
+            P::value("CPSET"),
+            P::value("SCALE PENALTY"),
+            P::optional("FASTLOCALTRK"),
+            P::optional("GLOBTRKINC"),
+            P::optional("WARP CHECK PERIOD"),
+            P::optional("WARP CUT OFF"),
         ],
     ),
     Keyword::read(

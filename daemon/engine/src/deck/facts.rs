@@ -66,6 +66,8 @@ pub struct Facts {
     pub modified_hard: bool,
     /// `*PRESSURE PENETRATION`.
     pub penetration: bool,
+    /// The deck has implicit dynamic steps.
+    pub implicit_dynamics: bool,
 }
 
 impl Facts {
@@ -87,6 +89,7 @@ impl Facts {
             debonding: false,
             modified_hard: false,
             penetration: false,
+            implicit_dynamics: false,
         }
     }
 

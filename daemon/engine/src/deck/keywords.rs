@@ -1,6 +1,6 @@
 //! What the reader knows about keywords: types of the table, look-up, and the uniform checks of parameters.
 //!
-//! The tables themselves stand in `model_table`, `contact_table`, `body_table`, `dynamic_table` and `step_table` (keywords that are read) and `other_table`
+//! The tables themselves stand in `model_table`, `contact_table`, `general_table`, `body_table`, `dynamic_table` and `step_table` (keywords that are read) and `other_table`
 //! (keywords that are known but not read).
 
 use std::sync::LazyLock;
@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use super::body_table::BODIES;
 use super::contact_table::CONTACT;
 use super::dynamic_table::DYNAMICS;
+use super::general_table::GENERAL;
 use super::lex::key;
 use super::model_table::MODEL;
 use super::other_table::OTHER;
@@ -177,7 +178,7 @@ impl Keyword {
 
 /// Every keyword that the reader knows: those it reads first, then the others.
 pub fn keywords() -> impl Iterator<Item = &'static Keyword> {
-    MODEL.iter().chain(CONTACT).chain(BODIES).chain(DYNAMICS).chain(STEPS).chain(OTHER)
+    MODEL.iter().chain(CONTACT).chain(GENERAL).chain(BODIES).chain(DYNAMICS).chain(STEPS).chain(OTHER)
 }
 
 static BY_KEY: LazyLock<FxHashMap<String, &'static Keyword>> =

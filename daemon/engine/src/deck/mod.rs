@@ -14,6 +14,7 @@ mod data;
 mod dialect;
 mod dynamic_table;
 mod facts;
+mod general_table;
 mod keywords;
 mod lex;
 mod members;

@@ -30,8 +30,9 @@ const INTERFACE: Effect = Effect::Refused(
 const DEBOND: Effect =
     Effect::Refused("bonds that break are not solved: remove it, or bond the surfaces for good with *EQUATION");
 const MESH_STAYS: Effect = Effect::Refused("displacements are small and the mesh stays as it is: remove it");
-const GENERAL_CONTACT: Effect =
-    Effect::Refused("general contact is not solved: name every two surfaces that may meet by *CONTACT PAIR");
+const GENERAL_CONTACT: Effect = Effect::Refused(
+    "overlaps in general contact are removed without strain, and clearances are those of the mesh: describe the contact by *CONTACT PAIR with *CLEARANCE",
+);
 const ISOTROPIC: Effect = Effect::Ignored("the material is isotropic and stresses are written in global directions");
 const NO_HEAT: Effect = Effect::Ignored("temperatures are not solved for and have no effect on the elastic answer");
 const NO_DAMPING: Effect =
@@ -280,17 +281,11 @@ pub const OTHER: &[Keyword] = &[
     other("*CHANGE SURFACE BEHAVIOR", CONTACT),
     other("*COHESIVE BEHAVIOR", CONTACT),
     other("*CONSTRAINT", CONTACT),
-    other("*CONTACT", GENERAL_CONTACT),
     other("*CONTACT CLEARANCE", GENERAL_CONTACT),
     other("*CONTACT CLEARANCE ASSIGNMENT", GENERAL_CONTACT),
-    other("*CONTACT CONTROLS ASSIGNMENT", GENERAL_CONTACT),
-    other("*CONTACT EXCLUSIONS", GENERAL_CONTACT),
-    other("*CONTACT FORMULATION", GENERAL_CONTACT),
-    other("*CONTACT INCLUSIONS", GENERAL_CONTACT),
     other("*CONTACT INITIALIZATION ASSIGNMENT", GENERAL_CONTACT),
     other("*CONTACT INITIALIZATION DATA", GENERAL_CONTACT),
-    other("*CONTACT PROPERTY ASSIGNMENT", GENERAL_CONTACT),
-    other("*CONTACT STABILIZATION", GENERAL_CONTACT),
+    other("*CONTACT STABILIZATION", CONTACT),
     noted("*DEBOND", DEBOND, &[P::optional("SLAVE"), P::optional("MASTER")]),
     other("*DESIGN PARAMETER", CONTACT),
     other("*DESIGN RESPONSE", CONTACT),

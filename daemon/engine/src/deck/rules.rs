@@ -34,7 +34,7 @@ impl Rule {
 }
 
 const STANDARD: &[Family] = &[Family::StandardSurfaces, Family::StandardElements];
-const SURFACES: &[Family] = &[Family::StandardSurfaces];
+const SLIDING: &[Family] = &[Family::StandardSurfaces, Family::ExplicitPairs];
 const EXPLICIT: &[Family] = &[Family::ExplicitPairs, Family::ExplicitGeneral];
 const PAIRS: &[Family] = &[Family::ExplicitPairs];
 const GENERAL: &[Family] = &[Family::ExplicitGeneral];
@@ -190,7 +190,7 @@ const RIGID_KINEMATIC: Rule = Rule {
         Blame::Pair,
         "a rigid surface cannot be the secondary one of kinematic contact",
         "its nodes do not move on their own, so nothing can be corrected",
-        "exchange the surfaces, or choose MECHANICAL CONSTRAINT=PENALTY",
+        "exchange the surfaces (WEIGHT=0 and no WEIGHT: the first is secondary), or choose MECHANICAL CONSTRAINT=PENALTY",
         text("21.4.4"),
     )
 };
@@ -245,9 +245,44 @@ pub const SHRINK_LATER: Rule = rule(
     text("*CONTACT INTERFERENCE"),
 );
 
+/// A softened law in an impact.
+const SOFTENED_IMPACT: Rule = Rule {
+    is_broken: Some(|facts| facts.implicit_dynamics && facts.law.is_some()),
+    severity: Severity::Warning,
+    ..rule(
+        STANDARD,
+        Blame::Behavior,
+        "the {law} law makes impacts elastic in an implicit dynamic step",
+        "no velocity is lost when points meet, as hard contact has it: nodes bounce and may chatter",
+        "damp the contact by *CONTACT DAMPING, choose PRESSURE-OVERCLOSURE=HARD for impacts that lose energy, or disregard this where \
+         bodies stay in contact",
+        text("22.1.2"),
+    )
+};
+
+/// TAUMAX=0 in Explicit.
+pub const TAUMAX_ZERO: Rule = rule(
+    EXPLICIT,
+    Blame::Friction,
+    "TAUMAX=0 is not allowed",
+    "no shear stress at all would be transmitted",
+    "leave TAUMAX out: there is no limit then",
+    text("22.1.4; *FRICTION"),
+);
+
+/// CLEARANCE behind the first step.
+pub const CLEARANCE_LATER: Rule = rule(
+    PAIRS,
+    Blame::Pair,
+    "*CLEARANCE stands outside the first step",
+    "it says where the bodies are before anything is computed",
+    "move it into the first step",
+    text("*CLEARANCE"),
+);
+
 /// CLEARANCE of a pair that slides far.
 pub const CLEARANCE_SLIDING: Rule = rule(
-    SURFACES,
+    SLIDING,
     Blame::Pair,
     "*CLEARANCE needs a pair with SMALL SLIDING",
     "the clearance belongs to the place on the primary surface that a node keeps",
@@ -273,5 +308,8 @@ pub const RULES: &[&Rule] = &[
     &MODIFIED_WITHOUT_COUNT,
     &MODIFIED_NOT_HARD,
     &SHRINK_LATER,
+    &SOFTENED_IMPACT,
+    &TAUMAX_ZERO,
+    &CLEARANCE_LATER,
     &CLEARANCE_SLIDING,
 ];

@@ -41,7 +41,10 @@ struct Key {
 }
 
 struct Line<'a> {
+    /// The same in every step, whatever is prescribed.
     name: String,
+    /// Name of the port.
+    port: String,
     quantity: Quantity,
     description: String,
     magnitude: f64,
@@ -62,17 +65,28 @@ fn lines(model: &Model, step: usize) -> Vec<Line<'_>> {
     let dof = |nodes: &[NodeId], direction: u8| {
         nodes.first().map_or(direction + 1, |&node| model.mesh.dof_of(node, direction))
     };
-    let boundaries = step.boundaries.iter().map(move |b| Line {
-        name: format!("boundary.{}.{}", b.region_name, dof(&b.nodes, b.direction)),
-        quantity: if dof(&b.nodes, b.direction) > 3 { Quantity::Angle } else { Quantity::Length },
-        description: match dof(&b.nodes, b.direction) {
-            dof @ 4.. => format!("Prescribed rotation {dof} of {}", b.region_name),
-            dof => format!("Prescribed displacement {dof} of {}", b.region_name),
-        },
-        magnitude: b.magnitude,
-        amplitude: b.amplitude,
-        kind: b.kind,
-        source: Source::Boundary(b),
+    let boundaries = step.boundaries.iter().map(move |b| {
+        let dof = dof(&b.nodes, b.direction);
+        let (prefix, what, quantity) = match (b.kind, dof > 3) {
+            (BoundaryKind::Displacement, false) => ("boundary", "displacement", Quantity::Length),
+            (BoundaryKind::Displacement, true) => ("boundary", "rotation", Quantity::Angle),
+            (BoundaryKind::Velocity, false) => ("velocity", "velocity", Quantity::Velocity),
+            (BoundaryKind::Velocity, true) => ("velocity", "angular velocity", Quantity::AngularVelocity),
+            (BoundaryKind::Acceleration, false) => ("acceleration", "acceleration", Quantity::Acceleration),
+            (BoundaryKind::Acceleration, true) => {
+                ("acceleration", "angular acceleration", Quantity::AngularAcceleration)
+            }
+        };
+        Line {
+            name: format!("boundary.{}.{dof}", b.region_name),
+            port: format!("{prefix}.{}.{dof}", b.region_name),
+            quantity,
+            description: format!("Prescribed {what} {dof} of {}", b.region_name),
+            magnitude: b.magnitude,
+            amplitude: b.amplitude,
+            kind: b.kind,
+            source: Source::Boundary(b),
+        }
     });
     let loads = step.loads.iter().map(move |l| {
         let region = &l.region_name;
@@ -104,6 +118,7 @@ fn lines(model: &Model, step: usize) -> Vec<Line<'_>> {
             }
         };
         Line {
+            port: name.clone(),
             name,
             quantity,
             description,
@@ -125,9 +140,9 @@ fn input_lines(model: &Model) -> Vec<(usize, Port)> {
         if line.magnitude == 0.0 {
             continue;
         }
-        let seen = taken.entry(line.name.clone()).or_insert(0);
+        let seen = taken.entry(line.port.clone()).or_insert(0);
         *seen += 1;
-        let name = if *seen == 1 { line.name } else { format!("{}_{seen}", line.name) };
+        let name = if *seen == 1 { line.port } else { format!("{}_{seen}", line.port) };
         out.push((index, Port { name, quantity: line.quantity, unit: None, description: line.description }));
     }
     out

@@ -183,3 +183,108 @@ fn gravity_asks_bars_for_a_density_and_masses_for_none() {
     refuses(&loaded("", "*DENSITY\n7.8e-9\n"), "*DLOAD", "material STEEL, which has no density");
     warns(&loaded("AXIAL", ""), "*DLOAD", "springs and dashpots have no mass");
 }
+
+/// The base deck as an implicit dynamic one with dashpots, a mass and rotary inertia.
+const DYNAMIC: &str = "\
+*ELEMENT, TYPE=DASHPOTA, ELSET=AXIAL
+31, 5, 15
+*ELEMENT, TYPE=DASHPOT1, ELSET=GROUND
+32, 7
+*ELEMENT, TYPE=DASHPOT2, ELSET=PAIRS
+33, 8, 18
+*ELEMENT, TYPE=MASS, ELSET=MASSES
+34, 17
+*ELEMENT, TYPE=ROTARYI, ELSET=WHEEL
+35, 17
+*DASHPOT, ELSET=AXIAL
+
+100.
+*DASHPOT, ELSET=GROUND
+3
+200.
+*DASHPOT, ELSET=PAIRS
+1, 2
+300.
+*MASS, ELSET=MASSES, ALPHA=0.5
+4.
+*ROTARY INERTIA, ELSET=WHEEL, ALPHA=0.25
+3., 2., 1., 0.1, 0.2, -0.3
+";
+
+fn moving(from: &str, to: &str) -> String {
+    assert!(DYNAMIC.contains(from), "the cards do not contain {from:?}");
+    let text = with("*MATERIAL", &format!("{}*MATERIAL", DYNAMIC.replacen(from, to, 1)));
+    let text = text.replace("*STATIC\n", "*DYNAMIC\n").replace("*BOUNDARY\nTOP, 3", "*BOUNDARY, TYPE=VELOCITY\nTOP, 3");
+    text.replace("PRESSURE-OVERCLOSURE=LINEAR\n1e6\n", "\n")
+}
+
+#[test]
+fn dashpots_and_inertia_are_read_with_their_sections() {
+    let (model, found) = accepted(&moving("", ""), Dialect::Abaqus);
+    assert!(found.is_empty(), "{}", listing(&found));
+    let mesh = &model.mesh;
+    let dashpot = |coefficient, directions| Connector::Dashpot { coefficient, directions };
+    let expected = [
+        dashpot(100.0, [0, 0]),
+        dashpot(200.0, [2, 0]),
+        dashpot(300.0, [0, 1]),
+        Connector::Mass { mass: 4.0, alpha: 0.5 },
+        Connector::RotaryInertia { inertia: [3.0, 2.0, 1.0, 0.1, 0.2, -0.3], alpha: 0.25 },
+    ];
+    assert_eq!((2..7).map(|e| mesh.connectors[&ElementId(e)]).collect::<Vec<_>>(), expected);
+    // Node 17 is the 15th; its rotations are the displacements of a node behind the 16 of the deck.
+    assert_eq!((mesh.node_count(), mesh.hidden_nodes), (16, 1));
+    assert_eq!(mesh.rotations, [(NodeId(14), NodeId(16))]);
+    assert_eq!(mesh.elements.nodes(6), [NodeId(16)]);
+    assert_eq!(mesh.node_labels[16], 17);
+}
+
+#[test]
+fn rotary_inertia_of_a_rigid_body_turns_with_its_reference_node() {
+    let rigid = moving("35, 17", "35, 15")
+        .replace("*STEP\n", "*RIGID BODY, ELSET=UPPER, REF NODE=15\n*STEP\n")
+        .replace("TOP, 1, 2\n", "15, 1, 2\n")
+        .replace("TOP, 3, 3", "15, 3, 3");
+    let mesh = model(&rigid).mesh;
+    assert_eq!((mesh.hidden_nodes, mesh.rotations.as_slice()), (1, [(NodeId(12), NodeId(16))].as_slice()));
+    assert_eq!(mesh.elements.nodes(6), [NodeId(16)]);
+    refuses(&rigid.replace("35, 15", "35, 17"), "*ELEMENT", "follows the reference node of a rigid body");
+    // Rotations of such a node are prescribed, loaded and thrown like those of a reference node.
+    let turned = moving("", "")
+        .replace("*BOUNDARY, TYPE=VELOCITY\n", "*BOUNDARY, TYPE=VELOCITY\n17, 4, 4, 2.\n")
+        .replace("*NODE PRINT", "*CLOAD\n17, 5, 3.\n*NODE PRINT")
+        .replace("*STEP\n", "*INITIAL CONDITIONS, TYPE=VELOCITY\n17, 6, 7.\n*STEP\n");
+    let model = model(&turned);
+    assert_eq!(
+        (model.steps[0].boundaries[0].nodes.as_slice(), model.steps[0].boundaries[0].direction),
+        ([NodeId(16)].as_slice(), 0)
+    );
+    let LoadKind::Concentrated { nodes, direction } = &model.steps[0].loads[0].kind else { panic!("a force") };
+    assert_eq!((nodes.as_slice(), *direction), ([NodeId(16)].as_slice(), 1));
+    assert_eq!(model.initial_velocities, [InitialVelocity { node: NodeId(16), direction: 2, value: 7.0 }]);
+}
+
+#[test]
+fn dashpots_and_inertia_are_checked() {
+    let cases = [
+        ("\n100.\n", "\n-100.\n", "*DASHPOT", "damping coefficient -100 is negative"),
+        ("3\n200.\n", "4\n200.\n", "*DASHPOT", "direction at node 1: 4 does not exist"),
+        ("3\n200.\n", "200.\n", "*DASHPOT", "a line of data of DASHPOT1 is missing"),
+        ("1, 2\n300.\n", "1, 2\n300.\n400.\n", "*DASHPOT", "DASHPOT2 takes 2 lines of data"),
+        ("*DASHPOT, ELSET=AXIAL", "*DASHPOT, NONLINEAR, ELSET=AXIAL", "*DASHPOT", "NONLINEAR is not supported"),
+        ("*DASHPOT, ELSET=AXIAL", "*DASHPOT, ELSET=MASSES", "*DASHPOT", "takes no *DASHPOT"),
+        ("*DASHPOT, ELSET=GROUND\n3\n200.\n", "", "*ELEMENT", "1 elements have no *DASHPOT, the first is element 32"),
+        ("31, 5, 15", "31, 5, 11", "*ELEMENT", "has no length"),
+        ("ALPHA=0.5", "ALPHA=-0.5", "*MASS", "ALPHA=-0.5 is not a number from 0 on"),
+        ("3., 2., 1., 0.1, 0.2, -0.3", "0., 0., 0.", "*ROTARY INERTIA", "the moments of inertia are zero"),
+        ("3., 2., 1., 0.1, 0.2, -0.3", "1., 1., 1., 2.", "*ROTARY INERTIA", "no body has the moments of inertia"),
+        ("3., 2., 1., 0.1, 0.2, -0.3", "-1., 1., 1.", "*ROTARY INERTIA", "no body has the moments of inertia"),
+    ];
+    for (from, to, keyword, fragment) in cases {
+        refuses(&moving(from, to), keyword, fragment);
+    }
+    let statics = moving("", "").replace("*DYNAMIC\n", "*STATIC\n").replace("TYPE=VELOCITY", "TYPE=DISPLACEMENT");
+    refuses(&statics, "*DASHPOT", "dashpots act in dynamic steps, and the deck has none");
+    let both = format!("{}*STEP\n*STATIC\n1., 1.\n*END STEP\n", moving("", ""));
+    warns(&both, "*DASHPOT", "dashpots have no force in the static steps of the deck");
+}

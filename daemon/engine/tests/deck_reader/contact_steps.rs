@@ -91,7 +91,7 @@ fn controls_are_checked() {
         ("SLAVE=THIRD, MASTER=FIRST, MAXCHP=1", "no surface THIRD"),
         ("TANGENT FRACTION=0.5", "TANGENT FRACTION belongs to STABILIZE"),
         ("FRICTION ONSET=LATE", "FRICTION ONSET=LATE is not known"),
-        ("SCALE PENALTY=2.", "SCALE PENALTY is not supported"),
+        ("SCALE PENALTY=2.", "SCALE PENALTY belongs to explicit steps"),
         ("MAXCHP=1\n1., 2.", "a data line is read behind STABILIZE only"),
         ("STABILIZE=0.", "STABILIZE=0. is not positive"),
         ("STABILIZE\n-1.", "damping coefficient -1 is not positive"),

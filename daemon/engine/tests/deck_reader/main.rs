@@ -9,5 +9,7 @@ mod contact_steps;
 mod damage;
 mod dynamics;
 mod equations;
+mod explicit;
+mod general;
 mod restart;
 mod rules;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{NodeId, SurfaceId};
+use crate::model::NodeId;
 
 use super::super::card::Card;
 use super::super::lex::{looks_numeric, real};
@@ -16,34 +16,86 @@ const CLEARANCE: &str = "*CLEARANCE";
 impl Builder<'_> {
     /// Gives pairs their clearances. A node that two lines name has the clearance of the later one.
     pub(super) fn build_clearances(&mut self, layout: &Layout<'_>) {
-        for card in layout.model.iter().filter(|card| card.keyword.name == CLEARANCE) {
-            let (Some(secondary), Some(primary)) = (card.parameters.value("SLAVE"), card.parameters.value("MASTER"))
-            else {
-                continue;
-            };
-            let pair = self.pair_of_surfaces(secondary, primary, card.at, CLEARANCE);
-            let Some(surfaces) = pair.and_then(|pair| self.model.pairs[pair].surfaces()) else { continue };
-            let (surface, is_adjusted) = (surfaces.secondary, surfaces.adjust.is_some());
-            let Some(clearances) = self.clearances(card, surface) else { continue };
-            let Some(pair) = pair else { continue };
-            if self.finite_sliding.contains(&pair) {
-                self.break_rule(&rules::CLEARANCE_SLIDING, card.at, CLEARANCE, "");
-            }
-            if is_adjusted {
-                let message = "ADJUST of the pair moves nodes, and the clearances given here hold all the same";
-                self.report.warning(card.at, CLEARANCE, message, "remove ADJUST or *CLEARANCE");
-            }
-            if let crate::model::PairMembers::Surfaces(surfaces) = &mut self.model.pairs[pair].members {
-                let mut merged: BTreeMap<NodeId, f64> = surfaces.clearances.drain(..).collect();
-                merged.extend(clearances);
-                surfaces.clearances = merged.into_iter().collect();
+        for (step, card) in layout.with_explicit_steps().filter(|(_, card)| card.keyword.name == CLEARANCE) {
+            let pairs = if self.is_explicit { self.pairs_by_set(step, card) } else { self.pair_by_surfaces(card) };
+            for pair in pairs {
+                self.clear(pair, card);
             }
         }
     }
 
-    /// Nodes and their clearances as a card gives them; `None` when it is wrong, which is reported.
-    fn clearances(&mut self, card: &Card, surface: SurfaceId) -> Option<Vec<(NodeId, f64)>> {
-        let nodes = self.surface_nodes(surface);
+    /// The pair of `MASTER` and `SLAVE`.
+    fn pair_by_surfaces(&mut self, card: &Card) -> Vec<usize> {
+        if card.parameters.has("CPSET") {
+            let remedy = "name the pair by MASTER and SLAVE";
+            self.report.error(card.at, CLEARANCE, "CPSET belongs to explicit analyses", remedy);
+        }
+        for name in ["MASTER", "SLAVE"].into_iter().filter(|name| !card.faulty && !card.parameters.has(name)) {
+            let message = format!("parameter {name} is missing");
+            self.report.error(card.at, CLEARANCE, message, format!("write *CLEARANCE, {name}=…"));
+        }
+        let (Some(secondary), Some(primary)) = (card.parameters.value("SLAVE"), card.parameters.value("MASTER")) else {
+            return Vec::new();
+        };
+        self.pair_of_surfaces(secondary, primary, card.at, CLEARANCE).into_iter().collect()
+    }
+
+    /// The pairs of `CPSET`.
+    fn pairs_by_set(&mut self, step: Option<usize>, card: &Card) -> Vec<usize> {
+        for name in ["MASTER", "SLAVE"].into_iter().filter(|name| card.parameters.has(name)) {
+            let message = format!("{name} belongs to static and implicit analyses");
+            let remedy = "name the pairs by CPSET, which their *CONTACT PAIR gives them";
+            self.report.error(card.at, CLEARANCE, message, remedy);
+        }
+        if step.is_some_and(|step| step > 0) {
+            self.break_rule(&rules::CLEARANCE_LATER, card.at, CLEARANCE, "");
+        }
+        match card.parameters.value("CPSET") {
+            Some(set) => self.pairs_of_set(set, card).unwrap_or_default(),
+            None => {
+                if !card.faulty {
+                    let remedy = "name a set of pairs: CPSET of *CONTACT PAIR";
+                    self.report.error(card.at, CLEARANCE, "parameter CPSET is missing", remedy);
+                }
+                Vec::new()
+            }
+        }
+    }
+
+    /// Gives a pair the clearances of a card.
+    fn clear(&mut self, pair: usize, card: &Card) {
+        let definition = &self.model.pairs[pair];
+        let Some(surfaces) = definition.surfaces() else { return };
+        let is_adjusted = surfaces.adjust.is_some();
+        let mut nodes = self.surface_nodes(surfaces.secondary);
+        if definition.explicit.weight.0 != 1.0 {
+            // Balanced: the nodes of either surface are secondary for a share.
+            nodes.extend(self.surface_nodes(surfaces.primary));
+            nodes.sort_unstable();
+        }
+        let Some(clearances) = self.clearances(card, nodes) else { return };
+        if self.is_explicit
+            && let Some((_, value)) = clearances.iter().find(|(_, value)| *value < 0.0)
+        {
+            let message = format!("clearance {value} is an overclosure, which explicit analyses do not begin with");
+            self.report.error(card.at, CLEARANCE, message, "give clearances from 0 on, or move the nodes");
+        }
+        if self.finite_sliding.contains(&pair) {
+            self.break_rule(&rules::CLEARANCE_SLIDING, card.at, CLEARANCE, "");
+        }
+        if is_adjusted {
+            let message = "ADJUST of the pair moves nodes, and the clearances given here hold all the same";
+            self.report.warning(card.at, CLEARANCE, message, "remove ADJUST or *CLEARANCE");
+        }
+        if let crate::model::PairMembers::Surfaces(surfaces) = &mut self.model.pairs[pair].members {
+            let mut merged: BTreeMap<NodeId, f64> = surfaces.clearances.drain(..).collect();
+            merged.extend(clearances);
+            surfaces.clearances = merged.into_iter().collect();
+        }
+    }
+
+    /// Nodes and their clearances as a card gives them, of the nodes that have one; `None` when it is wrong, which is reported.
+    fn clearances(&mut self, card: &Card, nodes: Vec<NodeId>) -> Option<Vec<(NodeId, f64)>> {
         match (card.parameters.value("VALUE"), card.parameters.has("TABULAR")) {
             (Some(text), false) => {
                 if let Some(line) = card.first_line() {

@@ -19,6 +19,7 @@ struct Procedures {
     explicit: bool,
     general_contact: bool,
     adaptive_mesh: bool,
+    implicit_dynamics: bool,
 }
 
 impl Procedures {
@@ -28,7 +29,8 @@ impl Procedures {
         Self {
             standard: !explicit || layout.steps.iter().any(|step| !step.is_explicit()),
             explicit,
-            general_contact: has(&["*CONTACT", "*CONTACT INCLUSIONS", "*CONTACT PROPERTY ASSIGNMENT"]),
+            implicit_dynamics: layout.has_dynamics() && !explicit,
+            general_contact: has(&["*CONTACT"]),
             adaptive_mesh: has(&["*ADAPTIVE MESH"]),
         }
     }
@@ -52,7 +54,8 @@ impl Builder<'_> {
             let of_surfaces = !matches!(self.interaction_lines[index].keyword, "*GAP" | "*INTERFACE");
             let pairs: Vec<&Card> =
                 (pair_cards.iter().copied()).filter(|card| of_surfaces && self.is_about(card, id)).collect();
-            for family in families(&procedures, of_surfaces, !pairs.is_empty()) {
+            let in_general = self.general_interactions.contains(&id);
+            for family in families(&procedures, of_surfaces, !pairs.is_empty(), in_general) {
                 let facts = self.interaction_facts(id, family, &procedures);
                 let lines = &self.interaction_lines[index];
                 let lines = Lines {
@@ -60,11 +63,11 @@ impl Builder<'_> {
                     damping: lines.damping.unwrap_or(lines.at),
                     other: None,
                 };
-                if pairs.is_empty() {
+                if pairs.is_empty() || family == Family::ExplicitGeneral {
                     let debonding = !of_surfaces && layout.debonds().next().is_some();
                     self.judge(&Facts { debonding, ..facts }, &lines, &mut reported);
                 }
-                for pair in &pairs {
+                for pair in pairs.iter().filter(|_| family != Family::ExplicitGeneral) {
                     for facts in self.pair_facts(facts, pair, layout) {
                         self.judge(&facts, &Lines { other: Some(pair), ..lines }, &mut reported);
                     }
@@ -96,6 +99,7 @@ impl Builder<'_> {
             damping: lines.damping_kind,
             kinematic: family == Family::ExplicitPairs,
             adaptive_mesh: procedures.adaptive_mesh,
+            implicit_dynamics: procedures.implicit_dynamics,
             ..Facts::of(family)
         }
     }
@@ -114,11 +118,23 @@ impl Builder<'_> {
                 _ => None,
             };
             let rigid = |surface| self.is_rigid_surface(surface);
+            // The line names the secondary surface first, unless WEIGHT says otherwise. Where only one order is possible, any is taken.
+            let named_first = match found {
+                [Some(first), Some(second)] => {
+                    roles.is_some()
+                        && weight_of(card).is_none()
+                        && !self.is_analytical(first)
+                        && rigid(first)
+                        && !rigid(second)
+                }
+                _ => false,
+            };
             Facts {
                 kinematic: facts.kinematic && constraint == MechanicalConstraint::Kinematic,
                 balanced: roles.is_some_and(|roles| roles.weight != 1.0),
-                rigid_secondary: roles
-                    .is_some_and(|roles| rigid(roles.secondary) || (roles.weight != 1.0 && rigid(roles.primary))),
+                rigid_secondary: named_first
+                    || roles
+                        .is_some_and(|roles| rigid(roles.secondary) || (roles.weight != 1.0 && rigid(roles.primary))),
                 debonding: layout.debonds().any(|debond| {
                     let named = |parameter: &str, surface: &str| {
                         debond.parameters.value(parameter).is_none_or(|name| key(name) == key(surface))
@@ -175,7 +191,7 @@ fn is_new<T: PartialEq>(reported: &mut Vec<T>, finding: T) -> bool {
 }
 
 /// Families for which an interaction is meant.
-fn families(procedures: &Procedures, of_surfaces: bool, has_pairs: bool) -> Vec<Family> {
+fn families(procedures: &Procedures, of_surfaces: bool, has_pairs: bool, in_general: bool) -> Vec<Family> {
     if !of_surfaces {
         return vec![Family::StandardElements];
     }
@@ -183,9 +199,10 @@ fn families(procedures: &Procedures, of_surfaces: bool, has_pairs: bool) -> Vec<
     if procedures.standard {
         found.push(Family::StandardSurfaces);
     }
-    if procedures.general_contact && !has_pairs {
+    if procedures.explicit && (in_general || (procedures.general_contact && !has_pairs)) {
         found.push(Family::ExplicitGeneral);
-    } else if procedures.explicit {
+    }
+    if procedures.explicit && (has_pairs || !procedures.general_contact) {
         found.push(Family::ExplicitPairs);
     }
     found
@@ -196,7 +213,9 @@ impl Lines<'_> {
         match blame {
             Blame::Behavior => Some((self.behavior, "*SURFACE BEHAVIOR")),
             Blame::Damping => Some((self.damping, "*CONTACT DAMPING")),
-            Blame::Controls | Blame::Penetration | Blame::Pair => self.other.map(|card| (card.at, card.keyword.name)),
+            Blame::Controls | Blame::Penetration | Blame::Pair | Blame::Friction => {
+                self.other.map(|card| (card.at, card.keyword.name))
+            }
         }
     }
 }

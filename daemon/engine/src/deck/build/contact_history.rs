@@ -19,7 +19,7 @@ const CHANGE_FRICTION: &str = "*CHANGE FRICTION";
 /// What the steps so far have left. Lists have one entry per pair.
 pub struct ContactHistory {
     all_pairs: StatedControls,
-    own: Vec<StatedControls>,
+    pub(super) own: Vec<StatedControls>,
     active: Vec<bool>,
     frictions: Vec<Friction>,
     pub(super) interferences: Vec<Option<Interference>>,
@@ -49,6 +49,11 @@ impl Builder<'_> {
         step: u32,
         history: &mut ContactHistory,
     ) -> StepContact {
+        if step == 0 {
+            for &(pair, scale) in &self.general_scales {
+                history.own[pair].scale_penalty = Some(scale);
+            }
+        }
         for event in self.pair_events.iter().filter(|event| event.step == step as usize) {
             history.active[event.pair] = event.active;
         }
@@ -56,6 +61,16 @@ impl Builder<'_> {
         let mut cards = cards.cards.iter().copied().peekable();
         while let Some(card) = cards.next() {
             match card.keyword.name {
+                CONTROLS if self.is_explicit => self.explicit_controls(card, history),
+                name @ (MODEL_CHANGE | INTERFERENCE | CHANGE_FRICTION) if self.is_explicit => {
+                    let message = "the keyword belongs to static and implicit steps";
+                    let remedy = match name {
+                        MODEL_CHANGE => "add and delete pairs by *CONTACT PAIR, OP=ADD and OP=DELETE",
+                        _ => "remove it",
+                    };
+                    self.report.error(card.at, name, message, remedy);
+                    cards.next_if(|next| name == CHANGE_FRICTION && next.keyword.name == "*FRICTION");
+                }
                 CONTROLS => self.controls_card(card, history),
                 MODEL_CHANGE => self.model_change(card, history),
                 INTERFERENCE => {

@@ -10,6 +10,10 @@ use super::Builder;
 
 const CONTROLS: &str = "*CONTACT CONTROLS";
 
+/// Parameters that have a meaning in explicit steps only.
+const EXPLICIT: [&str; 6] =
+    ["CPSET", "SCALE PENALTY", "FASTLOCALTRK", "GLOBTRKINC", "WARP CHECK PERIOD", "WARP CUT OFF"];
+
 /// What cards have stated so far, for one pair or for all; `None`: nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StatedControls {
@@ -18,6 +22,7 @@ pub struct StatedControls {
     pub modified: Option<ModifiedHard>,
     stabilization: Option<Stabilization>,
     friction_onset: Option<FrictionOnset>,
+    pub scale_penalty: Option<f64>,
 }
 
 impl StatedControls {
@@ -30,7 +35,7 @@ impl StatedControls {
             modified: own.modified.or(all.modified),
             stabilization: own.stabilization.or(all.stabilization),
             friction_onset: own.friction_onset.or(all.friction_onset).unwrap_or(default.friction_onset),
-            scale_penalty: default.scale_penalty,
+            scale_penalty: own.scale_penalty.or(all.scale_penalty).unwrap_or(default.scale_penalty),
         }
     }
 
@@ -41,12 +46,17 @@ impl StatedControls {
         self.modified = later.modified.or(self.modified);
         self.stabilization = later.stabilization.or(self.stabilization);
         self.friction_onset = later.friction_onset.or(self.friction_onset);
+        self.scale_penalty = later.scale_penalty.or(self.scale_penalty);
     }
 }
 
 impl Builder<'_> {
     /// What a card states, `earlier` being what held before; `None` when it is wrong, which is reported.
     pub(super) fn stated_controls(&mut self, card: &Card, earlier: &StatedControls) -> Option<StatedControls> {
+        for name in EXPLICIT.into_iter().filter(|name| card.parameters.has(name)) {
+            let message = format!("{name} belongs to explicit steps");
+            self.report.error(card.at, CONTROLS, message, "remove it; pairs are named by SLAVE and MASTER");
+        }
         let mut sound = !card.faulty;
         let mut stated = StatedControls { stabilization: self.stabilization(card, &mut sound), ..Default::default() };
         let absolute = self.control(card, "ABSOLUTE PENETRATION TOLERANCE", Least::Above, &mut sound);
@@ -176,7 +186,7 @@ impl Builder<'_> {
     }
 
     /// Value of a parameter, if it is given; outside of its range it is reported.
-    fn control(&mut self, card: &Card, name: &str, least: Least, sound: &mut bool) -> Option<f64> {
+    pub(super) fn control(&mut self, card: &Card, name: &str, least: Least, sound: &mut bool) -> Option<f64> {
         let text = card.parameters.value(name)?;
         let (is_sound, range): (fn(f64) -> bool, _) = match least {
             Least::Zero => (|x| x >= 0.0, "is negative"),
@@ -244,7 +254,7 @@ pub fn is_hard(interaction: &crate::model::SurfaceInteraction) -> bool {
 
 /// Where the range of a number begins.
 #[derive(Clone, Copy)]
-enum Least {
+pub enum Least {
     /// 0 is in it.
     Zero,
     /// 0 is not.

@@ -67,6 +67,10 @@ impl Builder<'_> {
             };
             self.report.error(card.at, PAIR, message, remedy);
         }
+        if card.parameters.word("TYPE") == "SURFACETOSURFACE" {
+            let message = "TYPE=SURFACE TO SURFACE belongs to pairs of static and implicit analyses";
+            self.report.error(card.at, PAIR, message, "remove it: nodes meet faces in explicit analyses");
+        }
         if card.parameters.has("WEIGHT") && weight_of(card).is_none() {
             let text = card.parameters.value("WEIGHT").unwrap_or("");
             let message = format!("WEIGHT={} is not a number from 0 to 1", excerpt(text.as_bytes()));

@@ -3,6 +3,8 @@
 use crate::model::Friction;
 
 use super::super::card::Card;
+use super::super::lex::real;
+use super::super::rules;
 use super::Builder;
 
 const FRICTION: &str = "*FRICTION";
@@ -10,6 +12,9 @@ const FRICTION: &str = "*FRICTION";
 impl Builder<'_> {
     /// What a `*FRICTION` card asks for; `None` when it is faulty or not solved, which is reported.
     pub(super) fn friction(&mut self, card: &Card) -> Option<Friction> {
+        if self.is_explicit && card.parameters.value("TAUMAX").is_some_and(|text| real(text.as_bytes()) == Ok(0.0)) {
+            self.break_rule(&rules::TAUMAX_ZERO, card.at, FRICTION, "");
+        }
         if card.parameters.has("ROUGH") {
             if let Some(line) = card.first_line() {
                 let message = "rough friction takes no data line";

@@ -30,6 +30,11 @@ impl Builder<'_> {
     pub(super) fn build_gaps(&mut self, layout: &Layout<'_>) {
         let mut owner: FxHashMap<ElementId, At> = FxHashMap::default();
         for card in layout.model.iter().filter(|card| card.keyword.name == GAP) {
+            if self.is_explicit {
+                let message = "contact elements belong to static and implicit analyses";
+                let remedy = "describe the contact by *CONTACT PAIR with a surface of nodes, TYPE=NODE";
+                self.report.error(card.at, GAP, message, remedy);
+            }
             self.gap_card(card, &mut owner);
         }
         let mesh = &self.model.mesh;

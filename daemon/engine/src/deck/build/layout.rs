@@ -2,7 +2,6 @@
 
 use super::super::card::Card;
 use super::super::keywords::{Effect, Placement};
-use super::super::lex::key;
 use super::super::report::{At, Report};
 
 /// Cards by the part of the deck that they stand in.
@@ -101,7 +100,8 @@ impl<'d> Layout<'d> {
                 }
             }
             let is_contact = card.keyword.placement == Placement::Interaction
-                || matches!(name, "*SURFACE INTERACTION" | "*CONTACT PAIR" | "*CLEARANCE");
+                || matches!(name, "*SURFACE INTERACTION" | "*CONTACT PAIR" | "*CLEARANCE")
+                || is_general_contact(name);
             let is_history = is_contact && self.steps.last().is_some_and(StepCards::is_explicit);
             if model_only && !is_history {
                 return report.error(
@@ -161,15 +161,6 @@ impl Layout<'_> {
     pub fn debonds(&self) -> impl Iterator<Item = &'_ Card> {
         self.all.iter().filter(|card| card.keyword.name == "*DEBOND")
     }
-
-    /// `*SURFACE` of a name.
-    pub fn surface(&self, name: &str) -> Option<&'_ Card> {
-        let is_it = |card: &&Card| {
-            card.keyword.name == "*SURFACE"
-                && card.parameters.value("NAME").is_some_and(|other| key(other) == key(name))
-        };
-        self.all.iter().find(is_it)
-    }
 }
 
 impl StepCards<'_> {
@@ -182,6 +173,11 @@ impl StepCards<'_> {
     pub fn has_refused_keywords(&self) -> bool {
         self.cards.iter().any(|card| is_refused(card))
     }
+}
+
+/// Whether a keyword describes general contact.
+pub fn is_general_contact(name: &str) -> bool {
+    super::super::general_table::GENERAL.iter().any(|keyword| keyword.name == name)
 }
 
 fn is_explicit_procedure(card: &Card) -> bool {

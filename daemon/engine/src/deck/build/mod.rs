@@ -12,9 +12,11 @@ mod damping;
 mod enforcement;
 mod equations;
 mod explicit;
+mod explicit_controls;
 mod explicit_pairs;
 mod friction;
 mod gaps;
+mod general;
 mod initial;
 mod interactions;
 mod interference;
@@ -90,6 +92,10 @@ struct Builder<'r> {
     pair_events: Vec<PairEvent>,
     /// Interaction of explicit pairs that name none.
     default_interaction: Option<InteractionId>,
+    /// Interactions of the parts of general contact.
+    general_interactions: Vec<InteractionId>,
+    /// Factors on the penalties of parts of general contact, by their positions among the pairs.
+    general_scales: Vec<(usize, f64)>,
     /// Whether the deck is one of Abaqus/Explicit.
     is_explicit: bool,
     /// Values before the first step, which CalculiX reaches over it.
@@ -136,6 +142,8 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
         contact_set_pairs: Vec::new(),
         pair_events: Vec::new(),
         default_interaction: None,
+        general_interactions: Vec::new(),
+        general_scales: Vec::new(),
         is_explicit: layout.is_explicit(),
         early_boundaries: Vec::new(),
         pair_at: Vec::new(),
@@ -158,6 +166,7 @@ pub fn build(mut deck: Deck, dialect: Dialect, map: &SourceMap, report: &mut Rep
     builder.build_interactions(&layout);
     builder.build_pairs(&layout);
     builder.build_gaps(&layout);
+    builder.build_general_contact(&layout);
     builder.build_amplitudes(&layout);
     builder.build_clearances(&layout);
     builder.build_initial_boundaries(&layout);

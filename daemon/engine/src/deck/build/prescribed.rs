@@ -113,7 +113,7 @@ impl Builder<'_> {
     }
 
     /// Displacements that are reached at once: an infinite velocity. Those that an earlier step has reached stay.
-    pub(super) fn check_jumps(&mut self, boundaries: &[Boundary], lines: &[At], is_explicit: bool) {
+    pub(super) fn check_jumps(&mut self, boundaries: &[Boundary], lines: &[At]) {
         for (boundary, &at) in boundaries.iter().zip(lines) {
             let earlier = self.model.steps.iter().flat_map(|step| &step.boundaries).rev();
             let mut earlier =
@@ -132,11 +132,7 @@ impl Builder<'_> {
                 "{name} is displaced by {magnitude} at once: a dynamic step does not ramp values without an amplitude"
             );
             let remedy = "give AMPLITUDE with a curve from 0, prescribe TYPE=VELOCITY, or write *STEP, AMPLITUDE=RAMP";
-            if is_explicit {
-                self.report.error(at, BOUNDARY, message, remedy);
-            } else {
-                self.report.warning(at, BOUNDARY, message, remedy);
-            }
+            self.report.warning(at, BOUNDARY, message, remedy);
         }
     }
 

@@ -68,7 +68,7 @@ impl Builder<'_> {
                 });
             }
             if procedure.is_dynamic() && default_amplitude == DefaultAmplitude::Step {
-                self.check_jumps(&boundaries, &boundary_lines, cards.is_explicit());
+                self.check_jumps(&boundaries, &boundary_lines);
             }
             let (loads, load_lines, loads_removed) = self.step_loads(cards);
             let step_contact = self.step_contact(cards, position as u32, &mut contact);

@@ -186,7 +186,7 @@ fn position(face: u8) -> u8 {
 }
 
 /// Faces of the elements that no other element of the mesh shares.
-fn free_faces(mesh: &Mesh, elements: &[ElementId]) -> Vec<ElementFace> {
+pub fn free_faces(mesh: &Mesh, elements: &[ElementId]) -> Vec<ElementFace> {
     // Corners tell a face; the fourth of a triangle is no node.
     let corners = |face: ElementFace| {
         let mut corners = [NodeId(u32::MAX); 4];
