@@ -86,7 +86,7 @@ impl Simulation {
         motion.curvatures.clear();
         motion.curvatures.extend(work.columns.iter().map(|column| column.acceleration));
         state.step_time = end;
-        self.balance_motion();
+        self.balance_motion(control.alpha);
         let (motion, own) = (self.state.motion.as_mut().expect("as above"), &self.implicit);
         done += supports(&motion.reaction, &own.displacement, &motion.displacement);
         motion.energies.external_work += done;
@@ -103,7 +103,8 @@ impl Simulation {
     }
 
     /// Forces out of balance without inertia and multipliers, strain energy, and reactions: of the state, with the loads at its time in `loads[1]`.
-    pub(crate) fn balance_motion(&mut self) {
+    /// Reactions are multipliers: behind an increment they take the forces of its start along as the operator's `alpha` says; at one time it is 0.
+    pub(crate) fn balance_motion(&mut self, alpha: f64) {
         let prepared = self.prepared.clone();
         let (nodal, model, form) = (prepared.nodal(), prepared.implicit(), self.dynamic_control().mass);
         let (own, work) = (&mut self.implicit, &self.work);
@@ -121,7 +122,15 @@ impl Simulation {
         let (walls, others): (Vec<f64>, Vec<f64>) =
             (self.state.forces.iter().enumerate()).map(|(row, &f)| if hard(row) { (f, 0.0) } else { (0.0, f) }).unzip();
         nodal.push(&others, 1.0, force);
-        motion.unbalance.clone_from(force);
+        std::mem::swap(&mut motion.unbalance, force);
+        // R = M a_1 + (1 + α) r_1 − α r_0 + Bᵀ Λ at the supports.
+        if alpha == 0.0 {
+            force.clone_from(&motion.unbalance);
+        } else {
+            for (before, now) in force.iter_mut().zip(&motion.unbalance) {
+                (0..3).for_each(|d| before[d] = (1.0 + alpha) * now[d] - alpha * before[d]);
+            }
+        }
         // Reactions hold what is left with inertia and multipliers.
         own.change.fill([0.0; 3]);
         model.mass(form).multiply_add(1.0, &motion.acceleration, &mut own.change);

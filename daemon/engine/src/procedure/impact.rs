@@ -116,7 +116,7 @@ impl Simulation {
             self.accelerate(counts)?;
         } else {
             load(&prepared.loading.columns, &self.state.coefficients, &mut self.implicit.loads[1]);
-            self.balance_motion();
+            self.balance_motion(0.0);
         }
         self.measure_energies();
         self.settle_overclosures();
@@ -189,7 +189,7 @@ impl Simulation {
         let (nodal, model, form) = (prepared.nodal(), prepared.implicit(), self.dynamic_control().mass);
         load(&prepared.loading.columns, &self.state.coefficients, &mut self.implicit.loads[1]);
         self.state_rows();
-        self.balance_motion();
+        self.balance_motion(0.0);
         let increment = self.state.increment_next;
         let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
         let scale = motion.force_scale(increment);
@@ -224,7 +224,7 @@ impl Simulation {
                 *force = *held;
             }
         }
-        self.balance_motion();
+        self.balance_motion(0.0);
         Ok(())
     }
 
