@@ -79,6 +79,14 @@ fn solved(increments: u32) -> tempfile::TempDir {
 
 /// The same for a variant of the deck.
 fn solved_deck(text: &str, increments: u32) -> tempfile::TempDir {
+    let directory = solved_to(text, increments, 1.0);
+    let rows = numbers(&directory, "job_history.csv", "time");
+    assert_eq!(rows.len() as u32, increments, "{rows:?}");
+    directory
+}
+
+/// The same for one that ends at another time.
+fn solved_to(text: &str, increments: u32, end: f64) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let reading = deck::read_text(text, Dialect::Abaqus);
     let model = reading.model.unwrap_or_else(|| panic!("{:?}", reading.diagnostics));
@@ -88,9 +96,9 @@ fn solved_deck(text: &str, increments: u32) -> tempfile::TempDir {
         ResultWriter::create(directory.path(), "job", Arc::clone(&prepared), WriteOptions::default()).unwrap();
     let mut simulation = Simulation::new(prepared);
     let mut watch = StopAfter { writer: &mut writer, left: increments };
-    let outcome = simulation.advance(1.0, &mut watch).unwrap();
-    let expected = if increments == 4 { AdvanceOutcome::Reached } else { AdvanceOutcome::Cancelled };
-    assert_eq!(outcome, expected);
+    let outcome = simulation.advance(end, &mut watch).unwrap();
+    let ended = (simulation.time() - end).abs() < 1e-9 * end;
+    assert_eq!(outcome, if ended { AdvanceOutcome::Reached } else { AdvanceOutcome::Cancelled });
     writer.finish(&simulation).unwrap();
     directory
 }
@@ -270,6 +278,59 @@ fn bars_and_springs_are_printed_with_one_value_each() {
     let counts = [count("BARS"), count("SPRINGS"), count("NODES OF ALL"), count("NODES OF ELEMENT SET")];
     assert_eq!(counts, [2, 1, 1, 0], "{last}");
     assert!(last.contains("AT ELEMENT"));
+}
+
+/// The deck as an explicit one: the upper cube is thrown down, in a hundred increments.
+fn explicit_deck(requests: &str) -> String {
+    let from = DECK.find("*STEP").unwrap();
+    let step = format!(
+        "*INITIAL CONDITIONS, TYPE=VELOCITY\nUP,3,-0.01\n*STEP\n*DYNAMIC, EXPLICIT, DIRECT USER CONTROL\n0.001,0.1\n{requests}*END STEP\n"
+    );
+    let model = DECK[..from].replacen("0.\n*SOLID SECTION", "0.\n*DENSITY\n1.\n*SOLID SECTION", 1);
+    model.replacen("*MATERIAL", "*NSET, NSET=UP\n11,12,13,14,15,16,17,18\n*MATERIAL", 1) + &step
+}
+
+#[test]
+fn explicit_steps_write_fields_at_intervals_and_motions_with_them() {
+    let directory = explicit_run("*NODE FILE\nU,V,A\n*NODE PRINT, NSET=TOP, FREQUENCY=50\nV,A\n*RESTART, WRITE\n");
+    assert_eq!(numbers(&directory, "job_history.csv", "increment").len(), 100);
+    assert_eq!(numbers(&directory, "job_ports.csv", "increment").len(), 100);
+    assert_eq!(frames(&directory), 20);
+    let fil: String = fs::read_to_string(directory.path().join("job.fil")).unwrap().lines().collect();
+    for (part, count) in [("I 42000", 20), ("I 3101", 320), ("I 3102", 320), ("I 3103", 320), ("I 3104", 0)] {
+        assert_eq!(fil.matches(part).count(), count, "{part}");
+    }
+    assert_eq!(column(&directory, "job_nodes.csv", "increment"), ["50", "50", "50", "50", "100", "100", "100", "100"]);
+    let (v, a) = (numbers(&directory, "job_nodes.csv", "V3"), numbers(&directory, "job_nodes.csv", "A3"));
+    assert!(v.iter().chain(&a).all(|x| *x != 0.0), "{v:?} {a:?}");
+    let last = numbers(&directory, "job_ports.csv", "node.TOP.V3")[99];
+    assert!((v[4..].iter().sum::<f64>() / 4.0 - last).abs() < 1e-15, "{v:?} {last}");
+    let printed = fs::read_to_string(directory.path().join("job.dat")).unwrap();
+    for part in ["E X P L I C I T", "FIXED TIME INCREMENT", "             V1             V2", "             A1"] {
+        assert!(printed.contains(part), "{part} is missing in\n{printed}");
+    }
+    assert_eq!(printed.matches("SUMMARY").count(), 2, "contact that opens and closes is told with the tables");
+    let frame = fs::read(directory.path().join("job_00020.vtu")).unwrap();
+    let head = String::from_utf8_lossy(&frame[..4000]).into_owned();
+    assert!(head.contains("Name=\"V\"") && head.contains("Name=\"A\""), "{head}");
+    let snapshots = fs::read_dir(directory.path()).unwrap().filter_map(|e| e.unwrap().file_name().into_string().ok());
+    assert_eq!(snapshots.filter(|name| name.ends_with(".ovck")).collect::<Vec<_>>(), ["job_restart_1_100.ovck"]);
+}
+
+#[test]
+fn the_history_of_an_explicit_step_is_as_dense_as_it_asks_for() {
+    let history = |requests: &str| numbers(&explicit_run(requests), "job_history.csv", "increment");
+    assert_eq!(history("*OUTPUT, HISTORY, TIME INTERVAL=0.025\n"), [25.0, 50.0, 75.0, 100.0]);
+    assert_eq!(history("*OUTPUT, HISTORY, FREQUENCY=40\n"), [40.0, 80.0, 100.0]);
+    assert_eq!(history("*OUTPUT, HISTORY\n").len(), 100);
+    let directory = explicit_run("*OUTPUT, FIELD, NUMBER INTERVAL=4\n*NODE OUTPUT\nU\n");
+    assert_eq!((frames(&directory), numbers(&directory, "job_history.csv", "time").len()), (4, 100));
+    let directory = explicit_run("*FILE OUTPUT, NUMBER INTERVAL=5\n*NODE FILE\nU\n");
+    assert_eq!(frames(&directory), 5);
+}
+
+fn explicit_run(requests: &str) -> tempfile::TempDir {
+    solved_to(&explicit_deck(requests), 100, 0.1)
 }
 
 #[test]
