@@ -25,7 +25,7 @@ pub enum Volumetric {
 pub type Corners = [[f64; 3]; 8];
 
 /// Signs of the natural coordinates of the corners.
-pub(super) const CORNER: [[f64; 3]; 8] = [
+pub const CORNER: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],

@@ -2,19 +2,23 @@
 //!
 //! ```text
 //! ε̇_vol = Σ_a g_a · v_a,   g_a = (1/V) ∫ ∇N_a dV          mean over the element
+//!                           g_a = ∇N_a at the centre         bricks of eight nodes
 //! L = 2 / √(V λ),           λ = largest eigenvalue of Σ_a g_a g_aᵀ / w_a
 //! ```
 //!
-//! with the lumped volume `w_a` of each node. `L` makes `2 c / L` the frequency of the fastest uniform strain in one direction on
+//! Both gradients have `Σ g_a = 0` and `Σ x_a g_aᵀ = I`: a pressure against `ε̇_vol` changes neither momentum nor moment of momentum.
+//! Those at the centre of a brick are made of three vectors; on parallelepipeds they are the mean too.
+//!
+//! `w_a` is the lumped volume of each node. `L` makes `2 c / L` the frequency of the fastest uniform strain in one direction on
 //! lumped masses, `c` the speed of dilatational waves: the edge of a cube, the length of a bar, the smallest edge of a box.
 //! A linear bulk viscosity `b₁ ρ c L ε̇_vol` is then `b₁` of the critical damping of a bar.
 
 use super::mass;
 use super::matrix::Coordinates;
-use super::{isoparametric, stable, table, uniform_strain};
+use super::{brick, isoparametric, stable, table};
 use crate::model::ElementKind;
 
-/// Mean rate of volume of a solid as a function of the velocities of its nodes.
+/// Rate of volume of a solid as a function of the velocities of its nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Dilatation {
     /// `g_a` at each node [1/length].
@@ -23,7 +27,7 @@ pub struct Dilatation {
     pub volume: f64,
 }
 
-/// Mean over the points at which the kind is integrated.
+/// At the centre of bricks of eight nodes, else the mean over the points at which the kind is integrated.
 pub fn of(kind: ElementKind, coordinates: &[[f64; 3]]) -> Dilatation {
     let (gradient, volume) = match kind {
         ElementKind::C3D8
@@ -31,8 +35,10 @@ pub fn of(kind: ElementKind, coordinates: &[[f64; 3]]) -> Dilatation {
         | ElementKind::C3D8I
         | ElementKind::C3D8R
         | ElementKind::C3D8RCalculix => {
-            let (gradient, volume) = uniform_strain::mean(super::corners(coordinates));
-            (Coordinates::of(gradient.into_iter()), volume)
+            let corners = super::corners(coordinates);
+            let centre = brick::point(corners, [0.0; 3]);
+            let volume = brick::nodal_volumes(corners).iter().sum();
+            (Coordinates::of(centre.gradient.into_iter()), volume)
         }
         _ => isoparametric::mean_gradient(table::of(kind), coordinates),
     };

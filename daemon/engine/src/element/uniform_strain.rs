@@ -21,7 +21,7 @@ pub const HOURGLASS: f64 = 0.005;
 pub const HOURGLASS_CALCULIX: f64 = 0.0005;
 
 /// Mean gradients [1/length] and volume [length³].
-pub(super) fn mean(corners: &Corners) -> ([[f64; 3]; 8], f64) {
+fn mean(corners: &Corners) -> ([[f64; 3]; 8], f64) {
     let mut gradient = [[0.0; 3]; 8];
     let mut volume = 0.0;
     for g in 0..8 {
