@@ -91,14 +91,15 @@ def solve(folder, text, arguments):
     return read(support.run(path, folder, *arguments))
 
 
-def problem(folder, deck, before, change):
-    """Why a changed deck has other physics; None when it has not."""
+def problem(folder, deck, before, change, ignored=()):
+    """Why a changed deck has other physics; None when it has not. `ignored`: kinds that are not compared."""
     try:
         changed, rule = change(deck_cards.parse(deck.text), "calculix" if "calculix" in deck.arguments else "abaqus")
         after = solve(folder, deck_cards.text(changed), deck.arguments)
         motion = largest(before.displacements)
         allowed = TOLERANCE * max(1.0, RESOLVED * size(deck_cards.parse(deck.text)) / motion if motion else 1.0)
-        bad = {kind: value for kind, value in differences(before, after, rule).items() if not value <= allowed}
+        found = differences(before, after, rule)
+        bad = {kind: value for kind, value in found.items() if kind not in ignored and not value <= allowed}
     except (AssertionError, ValueError, KeyError) as error:
         bad = f"{type(error).__name__}: {str(error)[:600]}"
     return f"{deck.name} {' '.join(deck.arguments)}: {bad}" if bad else None

@@ -14,13 +14,14 @@ from oracle.stepwise.plan import text
 PLANS = 3
 
 
-def insist(folder, name, deck):
-    """Runs a deck with a snapshot of every increment and goes on from each."""
+def insist(folder, name, deck, every=1):
+    """Runs a deck with a snapshot of every so many increments and goes on from each."""
     path = folder / f"{name}.inp"
     path.write_text(deck, encoding="utf-8")
-    whole = support.run(path, folder / "whole", "--snapshots", 1)
+    whole = support.run(path, folder / "whole", "--snapshots", every)
     listed = snapshots(whole)
-    assert len(listed) == sum(step["increments"] for step in whole.summary()["steps"])
+    # The end of a step has one besides.
+    assert len(listed) == sum(-(-step["increments"] // every) for step in whole.summary()["steps"])
     for one in listed[:-1]:
         place = folder / f"from_{one['step']}_{one['increment']}"
         rest = support.run(path, place, "--restart", whole.folder / one["file"])

@@ -172,8 +172,17 @@ def measure(case, folder, increments=None):
 
 def table(rows):
     """Markdown of (case, figures)."""
-    header = ["law; enforcement; weighting", "drift of ETOTAL", "lost in impacts", "lost to damping", "contacts begun"]
-    lines = [[c.name, f"{f.drift:.1e}", f"{f.impact:.1%}", f"{f.viscous:.1%}", f.contacts] for c, f in rows]
+    header = [
+        "law; enforcement; weighting",
+        "drift of ETOTAL",
+        "lost in impacts and steps",
+        "lost to damping",
+        "contacts begun",
+    ]
+    lines = [
+        [c.name, f"{f.drift:.1e}" if f.drift > 1e-12 else "rounding", f"{f.impact:.1%}", f"{f.viscous:.1%}", f.contacts]
+        for c, f in rows
+    ]
     return published.markdown(header, lines)
 
 
