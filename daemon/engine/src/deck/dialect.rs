@@ -95,6 +95,12 @@ const DIFFERENCES: &[Difference] = &[
         "as Abaqus: nothing is cut off",
     ),
     departs(
+        "*CONTACT DAMPING",
+        "coefficient, clearance c0 from which on nothing is damped, part of it with the full coefficient",
+        "the coefficient alone: damps where contact springs are, at points closer than c0 times the square root of their area",
+        "a coefficient alone damps where surfaces touch or overlap",
+    ),
+    departs(
         "*CONTACT PAIR, TYPE=SURFACE TO SURFACE",
         "constraints averaged over the secondary surface around each node",
         "springs at the integration points of the secondary faces, which begin at touch",

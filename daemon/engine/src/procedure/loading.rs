@@ -226,6 +226,9 @@ impl Loading {
                 });
                 if let Source::Boundary(b) = line.source {
                     owners.claim(b, column, s);
+                    if b.kind == BoundaryKind::Acceleration {
+                        owners.begin_together(model, b, s);
+                    }
                 }
                 now[column] = match (line.amplitude, without_amplitude(step.default_amplitude, line.magnitude)) {
                     (Some(amplitude), _) => Course::Curve { magnitude: line.magnitude, amplitude },
@@ -315,15 +318,16 @@ fn without_amplitude(default: DefaultAmplitude, magnitude: f64) -> Course {
     }
 }
 
-/// Initial velocity of the direction that a column prescribes: that of its first node, which the reader has all nodes have that an
-/// acceleration moves.
+/// Velocity of a direction at the start of the analysis [length/time].
+fn initial_velocity(model: &Model, node: NodeId, direction: u8) -> f64 {
+    let found = model.initial_velocities.iter().rfind(|v| (v.node, v.direction) == (node, direction));
+    found.map_or(0.0, |velocity| velocity.value)
+}
+
+/// Initial velocity of the direction that a column prescribes: that of its first node; where an acceleration moves them all have it.
 fn rate_initial(model: &Model, column: &Column) -> f64 {
     let Column::Displacement(entries) = column else { return 0.0 };
-    let of = |&(node, direction, _): &(NodeId, u8, f64)| {
-        let found = model.initial_velocities.iter().find(|v| (v.node, v.direction) == (node, direction));
-        found.map_or(0.0, |velocity| velocity.value)
-    };
-    entries.first().map_or(0.0, of)
+    entries.first().map_or(0.0, |&(node, direction, _)| initial_velocity(model, node, direction))
 }
 
 /// Each prescribed direction follows one column; a node named twice in a set counts once.
@@ -372,6 +376,25 @@ impl Owners {
             if owner != column && self.reported.insert((owner, column)) {
                 self.conflict(line, step);
             }
+        }
+    }
+
+    /// Nodes that one line accelerates move as one: they need one initial velocity.
+    fn begin_together(&mut self, model: &Model, line: &Boundary, step: usize) {
+        let velocity = |&node: &NodeId| initial_velocity(model, node, line.direction);
+        let first = line.nodes.first().map_or(0.0, velocity);
+        if line.nodes.iter().any(|node| velocity(node) != first) {
+            self.conflicts.push(Diagnostic::error(
+                line.place.clone(),
+                "*BOUNDARY",
+                format!(
+                    "step {}: nodes of {} that one acceleration moves in direction {} have different initial velocities",
+                    step + 1,
+                    line.region_name,
+                    line.direction + 1
+                ),
+                "give them one initial velocity, or a line for each velocity",
+            ));
         }
     }
 

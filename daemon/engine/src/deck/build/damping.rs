@@ -1,6 +1,6 @@
 //! `*CONTACT DAMPING`.
 
-use crate::model::{ContactDamping, DampingDefinition, ExplicitDamping, InteractionId};
+use crate::model::{ContactDamping, DampingDefinition, Dialect, ExplicitDamping, InteractionId};
 
 use super::super::card::Card;
 use super::super::facts::DampingKind;
@@ -9,6 +9,8 @@ use super::super::report::excerpt;
 use super::Builder;
 
 const DAMPING: &str = "*CONTACT DAMPING";
+/// Clearance below which surfaces count as touching where the CalculiX dialect gives the coefficient alone \[length\]: none.
+const TOUCHING: f64 = f64::MIN_POSITIVE;
 
 impl Builder<'_> {
     /// Gives an interaction its damping; whether the card is sound.
@@ -27,7 +29,8 @@ impl Builder<'_> {
         let Some(row) = card.single_row(what, self.report) else { return false };
         row.at_most(3, self.report);
         let coefficient = row.real(0, "damping coefficient", None, self.report);
-        let clearance = row.real(1, "clearance c0 without damping", None, self.report);
+        let default = (self.model.dialect == Dialect::Calculix).then_some(TOUCHING);
+        let clearance = row.real(1, "clearance c0 without damping", default, self.report);
         let fraction = row.real(2, "part of c0 with the full coefficient", Some(0.0), self.report);
         let (Some(coefficient), Some(clearance), Some(fraction), Some(tangent_fraction)) =
             (coefficient, clearance, fraction, tangent_fraction)
