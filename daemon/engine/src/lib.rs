@@ -44,6 +44,8 @@ mod analytical_tests;
 #[cfg(test)]
 mod column_tests;
 #[cfg(test)]
+mod explicit_tests;
+#[cfg(test)]
 mod gap_tests;
 #[cfg(test)]
 mod implicit_tests;

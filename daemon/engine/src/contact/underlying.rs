@@ -99,7 +99,7 @@ impl<'a> Underlying<'a> {
             let (kind, nodes) = (mesh.elements.kind(element.index()), mesh.elements.nodes(element.index()));
             let coordinates = Coordinates::of(nodes.iter().map(|n| mesh.nodes[n.index()]));
             let section = mesh.connectors[element];
-            let material = mesh.element_materials[element.index()];
+            let material = mesh.element_materials.get(element.index()).copied().unwrap_or(MaterialId::NONE);
             let youngs_modulus = self.model.materials.get(material.index()).map_or(0.0, |m| m.youngs_modulus);
             let stiffness = connector::axial_stiffness(&coordinates, section, youngs_modulus).unwrap_or(0.0);
             let b = connector::elongation(kind, &coordinates, section);

@@ -33,7 +33,8 @@ pub struct Volume {
 
 /// Material of an element.
 pub fn material(model: &Model, element: u32) -> Option<&Material> {
-    model.materials.get(model.mesh.element_materials[element as usize].index())
+    let material = model.mesh.element_materials.get(element as usize)?;
+    model.materials.get(material.index())
 }
 
 /// Whether an element has mass of its own that scaling multiplies: solids and bars.

@@ -8,8 +8,12 @@
 //! ```
 //!
 //! Half of what a force does over an increment is booked when it is known, the other half when the next force is. Loads and reactions
-//! make ALLWK, dampers ALLVD. What contact takes without its dampers is stored in its laws, `Σ A U(h)`, or lost (IMPACT_LOSS): in the
-//! corrector of kinematic contact, and where a penalty closes or opens within an increment, which may also give a little back.
+//! make ALLWK, dampers ALLVD. What contact takes beyond its dampers is stored in its laws, `Σ A U(h)`, or lost
+//! (IMPACT_LOSS): in the corrector of kinematic contact, and by a little, of either sign, where a penalty closes or opens within an
+//! increment.
+//!
+//! Between increments of two sizes `Δ₋` and `Δ₊` the kinetic energy is `½ M (v₋ v₊ − ½ (Δ₊ − Δ₋) v a)` with the velocity
+//! `v = v₊ − ½ Δ₊ a` at `t(n)`: the part of first order in the change of the size is left out.
 
 use serde::{Deserialize, Serialize};
 
@@ -46,7 +50,7 @@ pub struct Ledger {
 pub struct Stand {
     /// `½ u K u`.
     pub strain: f64,
-    /// `½ v(n−½) M v(n+½)`.
+    /// Kinetic energy.
     pub kinetic: f64,
     /// `Σ A U(h)`.
     pub stored: f64,

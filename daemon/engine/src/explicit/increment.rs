@@ -184,8 +184,14 @@ impl ExplicitModel {
     }
 
     /// Stable increment at the start of an increment that [`Self::look`] has seen, and the contact row that limits it, if one does;
-    /// `wished`: no more is asked for \[time\].
-    pub fn stable_increment(&self, wished: f64, memory: &Memory<'_>, work: &mut ExplicitWork) -> (f64, Option<u32>) {
+    /// `wished`: no more is asked for \[time\]; `scale`: part of it that the increment will have.
+    pub fn stable_increment(
+        &self,
+        wished: f64,
+        scale: f64,
+        memory: &Memory<'_>,
+        work: &mut ExplicitWork,
+    ) -> (f64, Option<u32>) {
         let plan = &self.steps[work.step];
         let phase = &self.phases[plan.phase];
         let bulk = 1.0 + work.bulk;
@@ -206,7 +212,7 @@ impl ExplicitModel {
             list.extend_from_slice(&plan.straight);
             for &point in &plan.curved {
                 let (i, rule) = (point as usize, &plan.rules[point as usize]);
-                let here = overclosures[i] + rates[i].max(0.0) * size;
+                let here = overclosures[i] + rates[i].max(0.0) * scale * size;
                 let slope = self.laws.evaluate(rule, here, memory.latched[i]).stiffness;
                 if slope > 0.0 {
                     list.extend(springs(rule, point, slope));
@@ -307,7 +313,7 @@ impl ExplicitModel {
         // q v = loads v − contact − given v, for the given forces are loads − Bᵀ F − q.
         let mut resisted = [loads[0] - sums.before, loads[1] - sums.after];
         for row in penalty_rows(plan) {
-            if memory.forces[row] != 0.0 {
+            if memory.forces[row] != 0.0 || memory.viscous[row] != 0.0 {
                 let rates = [work.rates[row], nodal.along(row, v)];
                 for k in 0..2 {
                     resisted[k] -= memory.forces[row] * rates[k];
@@ -319,7 +325,11 @@ impl ExplicitModel {
         if phase.is_damped() {
             (0..2).for_each(|k| power.viscous[k] += resisted[k]);
         }
-        let stand = Stand { strain, kinetic: sums.kinetic, stored };
+        let mut kinetic = sums.kinetic;
+        if before != size {
+            kinetic -= 0.25 * (size - before) * phase.inertia.power(v, a, size);
+        }
+        let stand = Stand { strain, kinetic, stored };
         if memory.last == 0.0 {
             memory.ledger.stored_start = stored;
         } else if memory.begins && plan.changed {

@@ -196,6 +196,23 @@ impl Inertia {
         sum
     }
 
+    /// Power `v M a` of inertia at the start of an increment of a size, given the velocities of its middle [energy/time].
+    pub fn power(&self, v: &[[f64; 3]], a: &[[f64; 3]], size: f64) -> f64 {
+        let at = |v: &[f64; 3], a: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|d| v[d] - 0.5 * size * a[d]) };
+        let mut sum = 0.0;
+        for (((v, a), mass), alone) in v.iter().zip(a).zip(&self.masses).zip(&self.alone) {
+            if *alone == 7 {
+                let v = at(v, a);
+                sum += mass * (v[0] * a[0] + v[1] * a[1] + v[2] * a[2]);
+            }
+        }
+        for (&node, block) in self.others.iter().zip(&self.blocks) {
+            let (v, a) = (at(&v[node as usize], &a[node as usize]), &a[node as usize]);
+            sum += (0..9).map(|k| block[k] * v[k / 3] * a[k % 3]).sum::<f64>();
+        }
+        sum
+    }
+
     /// Numbers of eight bytes that it holds.
     pub fn numbers(&self) -> usize {
         let groups: usize = self.groups.iter().map(|g| g.mass.len() + g.factor.len() + g.at.len()).sum();

@@ -28,8 +28,6 @@ mod rules;
 mod scaling;
 mod slots;
 mod stable;
-#[cfg(test)]
-mod tests;
 mod viscosity;
 
 pub use increment::{ExplicitWork, Found, Memory};

@@ -105,17 +105,18 @@ impl Simulation {
         let work = work_of(&mut slot, model, nodal, step);
         let control = self.explicit_control().clone();
         // What limits without contact also limits what contact is asked to allow.
-        let wished = match control.increments {
-            ExplicitIncrements::Direct(size) => size,
+        let (wished, scale) = match control.increments {
+            ExplicitIncrements::Direct(size) => (size, 1.0),
             ExplicitIncrements::Automatic { scale } => {
                 let largest = control.increment_max.unwrap_or(f64::INFINITY);
-                (scale * model.free_increment(step)).min(largest).min(control.period)
+                // Up to it laws are looked at: an increment is its part.
+                (model.free_increment(step).min(largest / scale).min(control.period / scale), scale)
             }
         };
         let (stable, row) = {
             let mut memory = self.memory();
             model.look(nodal, columns, &loads, &mut memory, work);
-            model.stable_increment(wished, &memory, work)
+            model.stable_increment(wished, scale, &memory, work)
         };
         let result = if work.is_finite() {
             self.choose(&control, wished, stable, row, interval, work)
@@ -195,7 +196,7 @@ impl Simulation {
             ExplicitIncrements::Automatic { scale } => {
                 // Where nothing limits it the deck should: a part of the step is a guess.
                 let free = control.increment_max.is_none() && stable >= period;
-                let limit = if free { UNLIMITED * period } else { wished.min(scale * stable) };
+                let limit = if free { UNLIMITED * period } else { scale * wished.min(stable) };
                 if !(limit > 0.0 && limit.is_finite()) {
                     let what = self.limiting(row, work);
                     return Err(format!("{what} allows no increment"));
