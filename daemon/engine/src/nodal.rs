@@ -93,6 +93,18 @@ impl Nodal {
             }
         }
     }
+
+    /// Moves masses of dependent directions to those that they depend on: what is left is the diagonal of the mass that independent
+    /// directions have with everything that hangs on them.
+    pub fn restrict_masses(&self, masses: &mut [[f64; 3]]) {
+        let masses = masses.as_flattened_mut();
+        for (at, terms) in &self.dependents {
+            let mass = std::mem::take(&mut masses[*at]);
+            for &(to, factor) in terms {
+                masses[to] += factor * factor * mass;
+            }
+        }
+    }
 }
 
 /// Adds the displacements of columns with these coefficients.

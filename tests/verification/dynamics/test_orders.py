@@ -73,6 +73,20 @@ def test_d25_ten_increments_of_the_operator(write_deck, tmp_path, alpha, mass, s
         assert last == pytest.approx(LAST, rel=1e-8)
 
 
+@pytest.mark.parametrize("factor", [1.0, -2.0])
+def test_initial_accelerations_reach_what_an_equation_ties(write_deck, tmp_path, factor):
+    """A massless node that a mass follows, pushed at once: u = F t^2 / (2 m) from the first increment on."""
+    mass, force, dt = 2.0, 4.0, 0.1
+    scene = Scene()
+    lead, tied = scene.node(1.0), scene.node(2.0, mass=mass)
+    scene.cards += ["*EQUATION", "2", f"{tied}, 3, 1., {lead}, 3, {-factor!r}"]
+    run = solve(write_deck, tmp_path, scene.text(scene.implicit(dt, 4, "*CLOAD", f"{lead}, 3, {force!r}")))
+    # The lever: the node that leads has factor^2 of the mass.
+    expected = 0.5 * force / (factor**2 * mass) * run.time**2
+    assert run.node(lead, "U3") == pytest.approx(expected, rel=1e-10)
+    assert run.node(tied, "U3") == pytest.approx(factor * expected, rel=1e-10)
+
+
 def test_d25_parameters():
     run = implicit.Implicit(system.Structure(*system.chain([1.0], []), system.wall(1, 1.0)), [0.0], [0.0])
     assert (run.beta, run.gamma) == pytest.approx((0.275625, 0.55), rel=1e-14)

@@ -210,14 +210,19 @@ impl Simulation {
         free.extend((0..nodal.rows()).map(|row| nodal.along(row, &own.acceleration)));
         let forces = self.hold(scale, counts)?;
         let motion = self.state.motion.as_mut().expect("as above");
+        // A direction may have its mass from those that depend on it.
+        let diagonal = |i: usize| model.mass(form).diagonal(crate::model::NodeId(i as u32));
+        let mut masses: Vec<[f64; 3]> =
+            (0..motion.acceleration.len()).map(|i| [0, 4, 8].map(|entry| diagonal(i)[entry])).collect();
+        nodal.restrict_masses(&mut masses);
         for (i, (change, known)) in self.implicit.change.iter().zip(&self.implicit.acceleration).enumerate() {
-            let mass = model.mass(form).diagonal(crate::model::NodeId(i as u32));
             for d in 0..3 {
                 // A direction without mass has no acceleration of its own: it follows at once.
-                let moved = if mass[4 * d] == 0.0 { 0.0 } else { change[d] };
+                let moved = if masses[i][d] == 0.0 { 0.0 } else { change[d] };
                 motion.acceleration[i][d] = known[d] + moved;
             }
         }
+        nodal.extend(&mut motion.acceleration);
         self.state_rows();
         for (row, (force, held)) in self.state.forces.iter_mut().zip(&forces).enumerate() {
             if self.work.rows[row].wall == Wall::TwoSided {
