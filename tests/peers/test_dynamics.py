@@ -58,6 +58,8 @@ def test_contdamp1_moves_as_shipped(tmp_path):
     rows, summary = ours("contdamp1", tmp_path)
     assert summary["outcome"] == "completed"
     insist_on_the_shipped_motion("contdamp1", rows, 1e-5)
+    # What docs/calculix-decks.md tells.
+    assert deviation(shipped("contdamp1", "displacements"), rows, "U") == pytest.approx(9e-8, rel=0.2)
 
 
 def test_contdamp2_moves_as_shipped_until_it_slides_too_far(tmp_path):
