@@ -15,6 +15,8 @@ const PLACE_ROUNDING: f64 = 1e-13;
 const TOLERATED: f64 = 1e-9;
 /// Change of ETOTAL, relative to the largest energy so far, beyond which a dynamic solution is not to be trusted.
 const ENERGY_DRIFT_MAX: f64 = 0.05;
+/// Energy that contact may make by the error of its time integration, relative to the largest energy so far.
+const ENERGY_MADE_MAX: f64 = 0.01;
 /// Overclosure, relative to the face, beyond which a softened law is outside small sliding (HCRIT: half a face).
 const OVERCLOSURE_MAX: f64 = 0.5;
 
@@ -113,7 +115,7 @@ impl Simulation {
     }
 }
 
-/// ETOTAL stays what it was.
+/// ETOTAL stays what it was, and contact makes no energy.
 fn audit_energy(motion: &Motion, extent: f64, findings: &mut Vec<String>) {
     let drift = motion.energies.total - motion.energy_start;
     // Forces along the last digits of places.
@@ -121,6 +123,13 @@ fn audit_energy(motion: &Motion, extent: f64, findings: &mut Vec<String>) {
     if drift.abs() > ENERGY_DRIFT_MAX * motion.energy_max + rounding {
         findings.push(format!(
             "energy balance: ETOTAL has changed by {drift:e}, the largest energy is {:e}: increments are too large for this motion",
+            motion.energy_max
+        ));
+    }
+    let lost = motion.energies.impact_loss;
+    if lost < -ENERGY_MADE_MAX * motion.energy_max - rounding {
+        findings.push(format!(
+            "contact has made energy: IMPACT_LOSS is {lost:e}, the largest energy is {:e}: increments are too large for the stiffness of its penalty or law",
             motion.energy_max
         ));
     }
