@@ -103,7 +103,9 @@ impl<'a> Underlying<'a> {
             let youngs_modulus = self.model.materials.get(material.index()).map_or(0.0, |m| m.youngs_modulus);
             let stiffness = connector::axial_stiffness(&coordinates, section, youngs_modulus).unwrap_or(0.0);
             let b = connector::elongation(kind, &coordinates, section);
-            let at = nodes.iter().position(|own| *own == node).map_or([0.0; 3], |position| b[position]);
+            // Facets of rigid bodies have more nodes than ends; none of them is drawn out.
+            let position = nodes.iter().position(|own| *own == node);
+            let at = position.and_then(|position| b.get(position).copied()).unwrap_or_default();
             sum += stiffness * dot(at, normal).powi(2);
         }
         (sum > 0.0).then_some(sum)
