@@ -1,7 +1,6 @@
 //! Dense matrices: products, triangular solves, Cholesky factors, eigenvalues.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve;
 use faer::reborrow::ReborrowMut;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -9,6 +8,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use serde::{Deserialize, Serialize};
 
 use super::PIVOT_RELATIVE_MIN;
+use super::product::{clear_registers, multiply};
 
 /// Dense column-major matrix.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -64,7 +64,7 @@ impl Dense {
     /// `selfᵀ self`, exactly symmetric.
     pub fn gram(&self) -> Dense {
         let mut out = Dense::zeros(self.columns, self.columns);
-        matmul(out.view_mut(), Accum::Replace, self.view().transpose(), self.view(), 1.0, Par::Seq);
+        multiply(out.view_mut(), Accum::Replace, self.view().transpose(), self.view(), 1.0);
         for j in 0..self.columns {
             for i in 0..j {
                 out.values[j * self.columns + i] = out.values[i * self.columns + j];
@@ -76,11 +76,13 @@ impl Dense {
     /// `self <- lower⁻¹ self`.
     pub fn solve_lower(&mut self, lower: &Dense) {
         triangular_solve::solve_lower_triangular_in_place(lower.view(), self.view_mut(), Par::Seq);
+        clear_registers();
     }
 
     /// `self <- lower⁻ᵀ self`.
     pub fn solve_lower_transposed(&mut self, lower: &Dense) {
         triangular_solve::solve_upper_triangular_in_place(lower.view().transpose(), self.view_mut(), Par::Seq);
+        clear_registers();
     }
 }
 
@@ -97,8 +99,9 @@ pub fn cholesky_in_place(matrix: &mut [f64], n: usize, scratch: &mut DenseScratc
     }
     let memory = scratch.memory.get_or_insert_with(|| MemBuffer::new(request));
     let view = MatMut::from_column_major_slice_mut(matrix, n, n);
-    if factor::cholesky_in_place(view, Default::default(), Par::Seq, MemStack::new(memory), Default::default()).is_err()
-    {
+    let done = factor::cholesky_in_place(view, Default::default(), Par::Seq, MemStack::new(memory), Default::default());
+    clear_registers();
+    if done.is_err() {
         return false;
     }
     (0..n).all(|i| matrix[i * n + i] * matrix[i * n + i] > PIVOT_RELATIVE_MIN * scratch.diagonal[i])
@@ -110,6 +113,7 @@ pub fn cholesky_solve(factor: &[f64], n: usize, x: &mut [f64]) {
     let mut rhs = MatMut::from_column_major_slice_mut(x, n, 1);
     triangular_solve::solve_lower_triangular_in_place(lower, rhs.rb_mut(), Par::Seq);
     triangular_solve::solve_upper_triangular_in_place(lower.transpose(), rhs, Par::Seq);
+    clear_registers();
 }
 
 /// Work space of the dense factorisation, kept between increments.
@@ -130,6 +134,7 @@ pub fn singular(matrix: &Dense) -> (Vec<f64>, Dense) {
     let rows = matrix.rows.max(k);
     let padded = faer::Mat::from_fn(rows, k, |i, j| if i < matrix.rows { matrix.column(j)[i] } else { 0.0 });
     let decomposition = padded.thin_svd().expect("a finite matrix has singular values");
+    clear_registers();
     let mut vectors = Dense::zeros(k, k);
     for j in 0..k {
         for (i, x) in vectors.column_mut(j).iter_mut().enumerate() {
@@ -147,6 +152,7 @@ pub fn eigen(matrix: &Dense) -> (Vec<f64>, Dense) {
     }
     let decomposition =
         matrix.view().self_adjoint_eigen(faer::Side::Lower).expect("a finite symmetric matrix has eigenvectors");
+    clear_registers();
     let mut vectors = Dense::zeros(n, n);
     for j in 0..n {
         for (i, x) in vectors.column_mut(j).iter_mut().enumerate() {

@@ -5,6 +5,7 @@ mod blocks;
 mod dense;
 mod factor;
 mod numeric;
+mod product;
 mod substitution;
 mod symbolic;
 

@@ -13,12 +13,12 @@ use std::ops::Range;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{self, LltError};
-use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::blocks::Blocks;
+use super::product::{clear_registers, multiply};
 use super::{PIVOT_RELATIVE_MIN, SingularPivot};
 use crate::solve::assembly::LowerMatrix;
 
@@ -133,6 +133,7 @@ impl Work {
         factor::cholesky_in_place(own.rb_mut(), Default::default(), Par::Seq, stack, Default::default())
             .map_err(|LltError::NonPositivePivot { index }| SingularPivot { unknown: start + index })?;
         solve_lower_triangular_in_place(own.rb(), pattern.rb_mut().transpose_mut(), Par::Seq);
+        clear_registers();
         Ok(())
     }
 
@@ -209,7 +210,7 @@ impl Work {
         let right = pattern.subrows(columns.start, columns.len()).transpose();
         for run in &self.runs[runs.clone()] {
             let left = pattern.subrows(run.rows.start, run.rows.len());
-            matmul(into.rb_mut().subrows_mut(run.at, run.rows.len()), Accum::Add, left, right, -1.0, Par::Seq);
+            multiply(into.rb_mut().subrows_mut(run.at, run.rows.len()), Accum::Add, left, right, -1.0);
         }
     }
 
@@ -223,7 +224,7 @@ impl Work {
             let panel =
                 MatMut::from_column_major_slice_mut(panel, height, width).subrows_mut(skipped, height - skipped);
             let left = pattern.subrows(begin, height - skipped);
-            matmul(panel, Accum::Replace, left, pattern.subrows(begin, width).transpose(), 1.0, Par::Seq);
+            multiply(panel, Accum::Replace, left, pattern.subrows(begin, width).transpose(), 1.0);
         }
     }
 

@@ -3,11 +3,11 @@
 //! All right-hand sides share one pass over L, in the order in which it is stored: for a few of them the memory is the
 //! limit. The supernodes are taken in a fixed order, so that the bits are always the same.
 
-use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Accum, MatMut, MatRef, Par};
 
 use super::blocks::Block;
+use super::product::{clear_registers, multiply};
 use super::{Dense, Factor};
 
 impl Factor {
@@ -59,12 +59,13 @@ fn forward(block: &Block<'_>, rhs: &mut Dense, scratch: &mut [f64]) {
     let (own_factor, pattern_factor) = views(block);
     let mut own = rhs.view_mut().subrows_mut(block.start, block.width);
     solve_lower_triangular_in_place(own_factor, own.as_mut(), Par::Seq);
+    clear_registers();
     if below == 0 {
         return;
     }
     let product = &mut scratch[..below * columns];
     let view = MatMut::from_column_major_slice_mut(product, below, columns);
-    matmul(view, Accum::Replace, pattern_factor, own.as_ref(), 1.0, Par::Seq);
+    multiply(view, Accum::Replace, pattern_factor, own.as_ref(), 1.0);
     for (x, product) in rhs.values.chunks_exact_mut(rows).zip(product.chunks_exact(below)) {
         for (&row, value) in block.pattern.iter().zip(product) {
             x[row as usize] -= value;
@@ -86,8 +87,9 @@ fn backward(block: &Block<'_>, rhs: &mut Dense, scratch: &mut [f64]) {
     }
     let mut own = rhs.view_mut().subrows_mut(block.start, block.width);
     let gathered = MatRef::from_column_major_slice(&*gathered, below, columns);
-    matmul(own.as_mut(), Accum::Add, pattern_factor.transpose(), gathered, -1.0, Par::Seq);
+    multiply(own.as_mut(), Accum::Add, pattern_factor.transpose(), gathered, -1.0);
     solve_upper_triangular_in_place(own_factor.transpose(), own, Par::Seq);
+    clear_registers();
 }
 
 /// The triangle of the supernode's own rows and the rectangle under it.
