@@ -74,21 +74,26 @@ impl Simulation {
         for &i in &event.opening {
             self.open(i as usize);
         }
-        for &i in &event.closing {
-            let i = i as usize;
+        // At the mean of their times some points overlap already that do so no more at the end of the increment.
+        let slack = OVERCLOSURE_ROUNDING * self.work.scale + PLACE_ROUNDING * prepared.extent;
+        let overlaps =
+            |i: &usize| is_hard(&moment, *i) && !self.state.closed[*i] && self.derived.overclosures[*i] > slack;
+        let mut closing: Vec<usize> = (0..prepared.points.len()).filter(overlaps).collect();
+        closing.extend(event.closing.iter().map(|&i| i as usize).filter(|i| !overlaps(i)));
+        for &i in &closing {
             let motion = self.state.motion.as_mut().expect("a dynamic step has a motion");
             motion.offsets[i] += self.derived.overclosures[i];
             self.state.closed[i] = true;
             self.state.stuck[i] = moment.sticks(i, true, false);
             self.state.latched[i] |= moment.latches(i);
         }
-        if !event.closing.is_empty() {
+        if !closing.is_empty() {
             self.strike(counts)?;
         }
         self.accelerate(counts)?;
         self.measure_energies();
         self.settle_overclosures();
-        Ok(if event.closing.is_empty() { Event::Release } else { Event::Impact })
+        Ok(if closing.is_empty() { Event::Release } else { Event::Impact })
     }
 
     /// At the start of a dynamic step: loads as they are then, forces of softened contact, and accelerations from equilibrium.

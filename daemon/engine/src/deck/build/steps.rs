@@ -72,6 +72,14 @@ impl Builder<'_> {
             }
             let (loads, load_lines, loads_removed) = self.step_loads(cards);
             let step_contact = self.step_contact(cards, position as u32, &mut contact);
+            if procedure.is_dynamic() && step_contact.controls.iter().any(|controls| controls.modified.is_some()) {
+                self.report.warning(
+                    opening.at,
+                    STEP,
+                    "MAXCHP, PERRMX and UERRMX have no effect in a dynamic step: hard contact changes by impacts and releases",
+                    "leave them out, or end them with *CONTACT CONTROLS, RESET",
+                );
+            }
             self.output_requests(cards, &mut requests);
             if !self.budget.take(requests.len(), opening.at, STEP, self.report) {
                 return;
