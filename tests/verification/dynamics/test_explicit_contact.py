@@ -36,7 +36,8 @@ def test_d21_penalty_contact_step_by_step(write_deck, tmp_path, mass, stiffness,
     scene = Scene(explicit=True)
     node = scene.node(0.0, -speed, mass)
     scene.pair([node], [*linear(stiffness), *UNDAMPED], 1.0, [PENALTY])
-    run = solve(write_deck, tmp_path, scene.text(scene.step(dt, 6)))
+    # At w dt = 0.8 the audit speaks of the energy that so coarse an increment makes.
+    run = solve(write_deck, tmp_path, scene.text(scene.step(dt, 6)), clean="contact has made energy")
     h, v, rows = 0.0, speed, []
     for _ in range(6):
         v -= dt * stiffness * max(h, 0.0) / mass
@@ -195,7 +196,8 @@ def test_d18_automatic_increments_keep_to_the_contact_spring(write_deck, tmp_pat
     behavior = [*linear(stiffness), "*CONTACT DAMPING, DEFINITION=CRITICAL DAMPING FRACTION", f"{fraction!r},"]
     scene.pair([node], behavior, 1.0, [PENALTY])
     step = ["*STEP", "*DYNAMIC, EXPLICIT", f", {3000.0 / w!r}", "*BULK VISCOSITY", "0., 0.", *scene.pairs]
-    run = solve(write_deck, tmp_path, scene.text([*step, *scene.implicit(1.0, 1)[3:]]))
+    # At the limit itself a bounce makes energy, and the audit says so.
+    run = solve(write_deck, tmp_path, scene.text([*step, *scene.implicit(1.0, 1)[3:]]), clean="contact has made energy")
     sizes = np.array([float(row["dt"]) for row in run.history])
     touching = run.force(node) > 0.0
     assert touching.any()
